@@ -46,6 +46,7 @@ if TYPE_CHECKING:
         compare as compare,
         compare_measured as compare_measured,
         comparison_json as comparison_json,
+        cycle_scenario as cycle_scenario,
         delete_run as delete_run,
         doctor as doctor,
         draw_comparison as draw_comparison,
@@ -87,6 +88,7 @@ if TYPE_CHECKING:
         write_calibration as write_calibration,
         write_comparison as write_comparison,
         write_draws as write_draws,
+        write_duty as write_duty,
         write_front as write_front,
         write_front_csv as write_front_csv,
         write_identification as write_identification,
@@ -147,14 +149,14 @@ _PUBLIC = {
     "api": """
         Actuator Calibrated Catalogue Compared Comparison Entry Explanation Installation
         OptimumCurve Prediction Price Rerun Restored Run Session Trial bending calibrate catalogue
-        check compare compare_measured comparison_json delete_run doctor draw_comparison draw_run
-        draw_sweep evaluate evaluate_many exit_code explain explore export identify optimise
-        pareto prune_runs read read_record read_run read_scenario record record_front record_run
-        record_sweep report report_run rerun restore runs save seal sensitivity
-        servo_sensitivities session simulate start sweep uncertainty verify_dynamics
-        write_calibration write_comparison write_draws write_front write_front_csv
-        write_identification write_seal write_series write_signals write_simulation
-        write_uncertainty
+        check compare compare_measured comparison_json cycle_scenario delete_run doctor
+        draw_comparison draw_run draw_sweep evaluate evaluate_many exit_code explain explore export
+        identify optimise pareto prune_runs read read_record read_run read_scenario record
+        record_front record_run record_sweep report report_run rerun restore runs save seal
+        sensitivity servo_sensitivities session simulate start sweep uncertainty verify_dynamics
+        write_calibration write_comparison write_draws write_duty write_front
+        write_front_csv write_identification write_seal write_series write_signals
+        write_simulation write_uncertainty
     """,
 }
 """The public names of each module; a module loads when one of its names is first used."""

@@ -94,6 +94,17 @@ def _of_design(name: str) -> Iterator[Case]:
     )
 
 
+def _stated() -> Case:
+    """Cylinders stated by their numbers: what needs parts is refused."""
+    files = sorted(path.name for path in (SHIPPED / "stated").glob("*.yaml"))
+    lines = [
+        step(f"{words} designs/stated/{file}", json=False, looks=1)
+        for file in files
+        for words in ("init --scenario", "evaluate")
+    ]
+    return Case("init/stated", tuple(lines))
+
+
 def _of_scenario(name: str) -> Case:
     line = f"simulate designs/scenarios/{name}.yaml --verify --csv out/signals.csv --report"
     return Case(
@@ -539,4 +550,5 @@ def cases() -> list[Case]:
     for name in designs():
         found += _of_design(name)
     found += map(_of_scenario, scenarios())
+    found.append(_stated())
     return [*found, *_others(), *_faults()]

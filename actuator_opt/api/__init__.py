@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         pareto as pareto,
         sensitivity as sensitivity,
         with_yield as with_yield,
+        write_duty as write_duty,
         write_front as write_front,
         write_front_csv as write_front_csv,
     )
@@ -73,6 +74,7 @@ if TYPE_CHECKING:
         Compared as Compared,
         Trial as Trial,
         compare_measured as compare_measured,
+        cycle_scenario as cycle_scenario,
         fitting as fitting,
         read_scenario as read_scenario,
         servo_sensitivities as servo_sensitivities,
@@ -106,7 +108,7 @@ _PUBLIC = {
     "exports": "explore export",
     "installation": "Installation doctor",
     "optimum": """
-        Prices evaluate optimise pareto sensitivity with_yield write_front
+        Prices evaluate optimise pareto sensitivity with_yield write_duty write_front
         write_front_csv
     """,
     "recorded_runs": """
@@ -124,7 +126,7 @@ _PUBLIC = {
     "results": "exit_code report",
     "sessions": "OptimumCurve Prediction Price Session session",
     "simulations": """
-        Compared Trial compare_measured fitting read_scenario servo_sensitivities
+        Compared Trial compare_measured cycle_scenario fitting read_scenario servo_sensitivities
         simulate verify_dynamics write_comparison write_signals write_simulation
     """,
     "starting": "start",

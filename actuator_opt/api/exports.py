@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from ..base import files, runs as run_store
 from ..base.arguments import guarded
 from ..base.errors import Diagnostic, InputError, UsageError
-from ..design import Design
+from ..design import Design, is_scenario
 from ..evaluation import Evaluation
 from ..version import VERSION
 from .actuator import Actuator, Plugins, as_actuator, located, plugins_of
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @guarded
 def export(
-    subject: Actuator | Design | Evaluation | Optimisation | str | Path,
+    subject: Actuator | Design | Evaluation | Optimisation | Trial | str | Path,
     *,
     formats: Sequence[str] = ("step",),
     folder: str | Path = "reports",
@@ -52,15 +52,16 @@ def export(
 
     Parameters
     ----------
-    subject : a design in any form, an evaluation, or an optimisation (its best design)
+    subject : a design in any form, an evaluation, an optimisation (its best design), or a scenario
+        (its file or as read), which then is written with the design that it names
     formats : any of "step", "dxf" (both need the extra ``cad``), "xlsx" (extra ``excel``), "c"; for
         a scenario "c" and "fmu"
     folder, stem : folder and name of the files; default: the design's name in ``reports/``
     actuator : the design as read, if `subject` is its evaluation; exports are named after its file
     date : ISO date in the files; default: that of SOURCE_DATE_EPOCH, or else none
     plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet
-    scenario : write the equations of this scenario instead, with the design in it, named after the
-        scenario's file: as C, or as a unit by FMI 2.0 ("fmu"). A unit contains a
+    scenario : write the equations of this scenario instead, with the given design in it, named
+        after the scenario's file: as C, or as a unit by FMI 2.0 ("fmu"). A unit contains a
         library for this platform if there is a C compiler; else its `ExportFile.note` says so
 
     Returns
@@ -79,8 +80,18 @@ def export(
     if date is not None:
         require_date(date)
     formats = (formats,) if isinstance(formats, str) else formats
-    formats = require_formats(formats, scenario=scenario is not None)
+    if scenario is not None and isinstance(subject, Trial):
+        raise UsageError(Diagnostic("two scenarios are given", "leave out `scenario`"))
+    trial = subject if isinstance(subject, Trial) else None
+    if scenario is None and isinstance(subject, str | Path):
+        trial = as_trial(subject) if is_exported_scenario(subject, formats) else None
+    formats = require_formats(formats, scenario=scenario is not None or trial is not None)
     date = date or date_from_environment()
+    if trial is not None:
+        return _export_scenario(
+            trial, trial.actuator, formats=formats, folder=Path(folder), stem=stem, date=date
+        )
+    assert not isinstance(subject, Trial)  # it has returned above
     if isinstance(subject, Actuator | Design | str | Path):
         exported = as_actuator(subject, plugins)
         evaluation = None
@@ -89,9 +100,11 @@ def export(
         own = plugins_of(plugins) if actuator is None else actuator.plugins
         exported = Actuator(evaluation.design, None if actuator is None else actuator.source, own)
     if scenario is not None:
+        trial = as_trial(scenario)
         return _export_scenario(
-            as_trial(scenario), exported, formats=formats, folder=Path(folder), stem=stem, date=date
-        )
+            trial, with_design(trial, exported), formats=formats, folder=Path(folder), stem=stem,
+            date=date,
+        )  # fmt: skip
     with located(exported):
         return write_exports(
             evaluation or evaluate(exported),
@@ -103,17 +116,23 @@ def export(
         )
 
 
+def is_exported_scenario(source: str | Path, formats: Sequence[str]) -> bool:
+    """Whether a file to export is a scenario: by its keys, or for standard input by the formats."""
+    return "fmu" in formats if str(source) == "-" else is_scenario(source)
+
+
 def _export_scenario(
     trial: Trial, actuator: Actuator, *, formats: Sequence[str], folder: Path, stem: str | None,
     date: str | None,
 ) -> list[ExportFile]:  # fmt: skip
-    """Write the equations of a scenario with a design."""
+    """Write the equations of a scenario with a design that has the scenario's values."""
     from ..exports import scenario_exports
 
     file = trial.loaded.source.file
     with placed(trial):
+        inputs, records = trial.inputs(actuator)
         return scenario_exports(
-            trial.scenario, with_design(trial, actuator).subject(), trial.records,
+            inputs, actuator.subject(), records,
             formats=formats, folder=folder,
             stem=stem or ("scenario" if file.startswith("<") else Path(file).stem),
             program=f"actuator-opt {VERSION}", date=date,

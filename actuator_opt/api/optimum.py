@@ -62,6 +62,24 @@ def evaluate(
     return with_yield(evaluation, plugins=actuator.plugins, seed=seed)
 
 
+@guarded
+def write_duty(evaluation: Evaluation, path: str | Path) -> ReportFile:
+    """Write the traces of all duty cycles as CSV, with units in the header.
+
+    Raises
+    ------
+    UsageError : the design states no duty cycles
+    """
+    from ..pages.duty import series
+    from ..rendering.series import write_csv
+
+    columns = series(evaluation)
+    if not columns:
+        message = f"{evaluation.name} states no duty cycles"
+        raise UsageError(Diagnostic(message, "add duty.cycles to the design, or leave out --csv"))
+    return write_csv(columns, Path(path))
+
+
 def with_yield(
     evaluation: Evaluation, *, plugins: tuple[Plugin, ...] = (), seed: int = 0
 ) -> Evaluation:

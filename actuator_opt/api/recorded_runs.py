@@ -298,14 +298,14 @@ def record_run(
     ------
     InputError : the record cannot be written
     """
-    from ..design.cycle_reader import texts_of
+    from ..design.flow_tables import self_contained
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
 
     place = _folder(folder)
     if place is None:
         return None
-    source, files = actuator.source, texts_of(actuator.design)
+    design, source = actuator.design, actuator.source
     started = _started()
     common_head = {
         "kind": kind,
@@ -317,13 +317,14 @@ def record_run(
         "spec_hash": spec_hash(actuator.subject()),
         "seed": seed,
     }
+    text = to_yaml(design) if source is None else self_contained(source.text, design)
     common_body = {
         "date": date or date_from_environment(),
         "input": {
             "name": file_name(actuator.design, source),
-            "text": to_yaml(actuator.design) if source is None else source.text,
+            "text": text,
             **_changes(source),
-            **({"files": files} if files else {}),
+            **_files(actuator),
             "plugins": _plugins(actuator.plugins),
         },
         "versions": _versions(),
@@ -331,6 +332,14 @@ def record_run(
     head, body = common_head | dict(head), common_body | dict(body)
     path = run_store.write(place, f"{started:%Y%m%d-%H%M%S}", head, body)
     return Run(path.stem, path, head, body)
+
+
+def _files(actuator: Actuator) -> dict[str, dict[str, str]]:
+    """Texts of the cycle files that a design names, if it names any."""
+    from ..design.cycle_reader import texts_of
+
+    files = texts_of(actuator.design)
+    return {"files": files} if files else {}
 
 
 def _changes(source: FileSource | None) -> dict[str, Any]:

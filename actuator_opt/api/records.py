@@ -73,14 +73,14 @@ def read_record(
         not a number
     """
     from ..base.files import read_bytes
-    from ..base.sheet import decode_record
+    from ..base.sheets import decode_sheet
     from ..identification import column_units, parse_record
 
     known_units = column_units(units)
     kinds = (".csv", ".txt", ".tsv")
     name = "<stdin>" if str(source) == "-" else str(source)
     data = read_bytes(source, most=MOST_BYTES + 1, kinds=kinds, what="CSV file")
-    text = decode_record(data, name, most=MOST_BYTES)
+    text = decode_sheet(data, name, most=MOST_BYTES)
     return parse_record(text, name=name, columns=columns, units=known_units, needed=needed)
 
 

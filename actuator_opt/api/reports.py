@@ -23,13 +23,14 @@ if TYPE_CHECKING:
     from ..optimisation.result import Optimisation
     from ..pages import ReportFile, Table
     from ..rendering.blocks import Block, Origin
+    from ..simulation import Simulation
     from ..simulation.verification import Verification
     from ..studies.seal import SealStudy
 
 REPLICAS = "actuator_opt.replicas"
 """Package with the tables of published papers; it is imported by name, since a wheel lacks it."""
 ABSENT = (
-    "Caution: the tables that compare this design with {paper} are not part of this installation. "
+    "Caution: the tables that compare our numbers with {paper} are not part of this installation. "
     "The source distribution and the repository contain them, in actuator_opt/replicas."
 )
 FORMATS = ("pdf", "html", "both")
@@ -137,23 +138,24 @@ def report_design(
     return write(report, origin, **place, **run)
 
 
-def published(evaluation: Evaluation) -> list[Block]:
-    """Tables that compare our numbers with those of the paper whose cylinder the design describes.
+def published(subject: Evaluation | Simulation) -> list[Block]:
+    """Tables that compare our numbers with those of the source that design or scenario reproduces.
 
     The package with these tables is imported by name, because a wheel lacks it. If it is missing,
     the report says which distributions contain the tables.
     """
     from ..rendering.blocks import Notes
 
-    if evaluation.design.reproduces is None:
+    holder = subject.design if isinstance(subject, Evaluation) else subject.scenario
+    if holder.reproduces is None:
         return []
     try:
         replicas = import_module(REPLICAS)
     except ModuleNotFoundError as error:
         if error.name != REPLICAS:
             raise
-        return [Notes("Published numbers", [ABSENT.format(paper=evaluation.design.reproduces)])]
-    blocks: list[Block] = replicas.published(evaluation)
+        return [Notes("Published numbers", [ABSENT.format(paper=holder.reproduces)])]
+    blocks: list[Block] = replicas.published(subject)
     return blocks
 
 
@@ -186,12 +188,13 @@ def origin(
 ) -> Origin:
     """The origin stated on a page: the file as read, or else the design's text."""
     from ..design.cycle_reader import texts_of
+    from ..design.flow_tables import self_contained
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
     from ..rendering.blocks import Origin
 
     return Origin(
-        source_text=source.text if source is not None else to_yaml(design),
+        source_text=to_yaml(design) if source is None else self_contained(source.text, design),
         source_name=file_name(design, source),
         command=command,
         spec_hash=spec_hash(prepare(design)),

@@ -126,7 +126,7 @@ def kinds(*declared: ResultKind) -> dict[str, ResultKind]:
 KINDS = kinds(
     ResultKind(
         "evaluation.result:Evaluation", _met, page="pages.report:page", card="pages.card:blocks",
-        report="api.reports:report_design", csv=None, record=None,
+        report="api.reports:report_design", csv="api:write_duty", record=None,
     ),
     ResultKind(
         "optimisation.result:Optimisation", _optimised, page="pages.report:page",

@@ -17,7 +17,7 @@ from ..design import Design, pairs
 from ..studies.plant import plant
 from .actuator import Actuator, Result, as_actuator
 from .records import Units
-from .reports import ReportArguments, ReportPlace, page_of
+from .reports import ReportArguments, ReportPlace, page_of, published
 
 if TYPE_CHECKING:
     from ..design.scenario import LoadedScenario, Scenario
@@ -48,6 +48,23 @@ class Trial(OneLine):
     def in_short(self) -> tuple[str, str]:
         """The scenario's duration and its design."""
         return self.scenario.name, f"{self.scenario.duration:g} s with {self.actuator.design.name}"
+
+    def inputs(
+        self, actuator: Actuator | None = None
+    ) -> tuple[Scenario, Mapping[tuple[str, str], tuple[Array, Array]]]:
+        """The scenario and its records; with the signals of a duty cycle for a design.
+
+        Raises
+        ------
+        InputError
+            the linkage of the design cannot follow the duty cycle
+        """
+        from ..simulation.duty_cycle import with_cycle
+
+        if self.scenario.cycle is None:
+            return self.scenario, self.records
+        scenario, records = with_cycle(self.scenario, (actuator or self.actuator).subject())
+        return scenario, {**self.records, **records}
 
     @property
     def files(self) -> list[Path]:
@@ -85,10 +102,66 @@ def read_scenario(
     return Trial(loaded.scenario, actuator, _records(loaded, units), loaded)
 
 
+LONGEST = 1e4
+"""Simulated time with which a scenario is read before its period is known [s]."""
+FINEST = 1e-3
+"""Longest sample time of a simulated duty cycle [s] (our choice: peaks are taken from samples)."""
+
+
+@guarded
+def cycle_scenario(
+    design: str | Path, cycle: str, *, periods: int = 3, set: SetValues = ()
+) -> Trial:
+    """Make a scenario of a duty cycle: position and force over time of several periods.
+
+    Parameters
+    ----------
+    design : file of the design
+    cycle : name of the duty cycle
+    periods : number of periods; the last is compared with the quasi-static results
+    set : values to replace, by PATH in the scenario, or else in the design
+
+    Raises
+    ------
+    InputError
+        as for `read_scenario`; or the design has no such duty cycle
+    """
+    from ..design.scenario import read_design_of, read_scenario as read
+    from ..design.writer import scalar
+    from ..simulation.duty_cycle import cycle_of
+
+    if str(design) == "-" or not 1 <= periods <= MOST_PERIODS:
+        message = f"{periods} periods: write 1 to {MOST_PERIODS}"
+        if str(design) == "-":
+            message = "a duty cycle needs the file of its design"
+        raise UsageError(Diagnostic(message, "name the design file, and 1 to 100 periods"))
+
+    def loaded(duration: float, sample_time: float) -> LoadedScenario:
+        text = (
+            f"name: {scalar(cycle)}\ndesign: {scalar(Path(design).name)}\n"
+            f"cycle: {scalar(cycle)}\n"
+            f"duration: {duration:.12g} s\nsample_time: {sample_time:.12g} s\n"
+        )
+        return replace(read(text, overrides=pairs(set)), folder=Path(design).parent)
+
+    first = loaded(LONGEST, 1.0)
+    duty = cycle_of(first.scenario, read_design_of(first).design)
+    assert duty is not None  # else `read_design_of` raises
+    period = duty.record.duration * duty.time_scale
+    duration = (periods if duty.closed else 1) * period
+    scenario = loaded(duration, min(FINEST, period / 1000))
+    actuator = read_design_of(scenario)
+    return Trial(scenario.scenario, Actuator(actuator.design, actuator.source), {}, scenario)
+
+
+MOST_PERIODS = 100
+"""Largest number of periods of a simulated duty cycle (our choice)."""
+
+
 def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tuple[Array, Array]]:
     """Columns of the records that the scenario's signals use, by file and column."""
     from ..base.files import read_bytes
-    from ..base.sheet import decode_record
+    from ..base.sheets import decode_sheet
     from ..design.scenario import recorded_parts
     from ..identification import column_units, parse_column
 
@@ -102,7 +175,7 @@ def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tupl
             if file not in texts:
                 path_of = loaded.folder / file
                 data = read_bytes(path_of, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
-                texts[file] = decode_record(data, name, most=MOST_BYTES)
+                texts[file] = decode_sheet(data, name, most=MOST_BYTES)
             records[file, column] = parse_column(
                 texts[file], column, dimension, name=name, units=known_units
             )
@@ -138,7 +211,7 @@ def simulate(
     verify : whether to integrate again by another method and compare the results
     margins : whether to compute the margins of the control loop even if its gain is stated; they
         are always computed for a gain that is tuned by them
-    method : integration method: "lsoda" (the fastest), "cvodes" (extra ``fast``) or "radau"
+    method : integration method: "lsoda" (the faster) or "radau"
 
     Returns
     -------
@@ -158,10 +231,11 @@ def simulate(
 
     trial = as_trial(scenario, set)
     with placed(trial):
+        inputs, records = trial.inputs()
         return run(
-            trial.scenario,
+            inputs,
             trial.actuator.subject(),
-            records=trial.records,
+            records=records,
             verify=verify,
             margins=margins,
             method=method,
@@ -277,7 +351,7 @@ def compare_measured(
         as for `read_scenario`; or record and simulation do not overlap, or a parameter is unknown
     """
     from ..base.files import read_bytes
-    from ..base.sheet import decode_record
+    from ..base.sheets import decode_sheet
     from ..identification import column_units
     from ..simulation.linear import tune
     from ..simulation.measured import overlay, parse_measured
@@ -287,7 +361,7 @@ def compare_measured(
     trial = as_trial(scenario)
     name = str(record)
     data = read_bytes(record, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
-    text = decode_record(data, name, most=MOST_BYTES)
+    text = decode_sheet(data, name, most=MOST_BYTES)
     measured = parse_measured(text, name=name, columns=columns, units=column_units(units))
     with placed(trial):
         if not fit:
@@ -297,10 +371,11 @@ def compare_measured(
             return Compared(overlay(simulation, measured))
         subject = trial.actuator.subject()
         actuator = plant(subject)
+        inputs, records = trial.inputs()
         result = fitted(
-            trial.scenario, actuator, trial.records, measured, fit,
-            tuned=tune(trial.scenario, actuator, trial.records, with_margins=margins),
-            verify=verify, method=method, spec=spec_of(subject, trial.scenario),
+            inputs, actuator, records, measured, fit,
+            tuned=tune(inputs, actuator, records, with_margins=margins),
+            verify=verify, method=method, spec=spec_of(subject, inputs),
         )  # fmt: skip
     return Compared(result.after, result)
 
@@ -320,7 +395,8 @@ def servo_sensitivities(
 
     trial = as_trial(scenario)
     with placed(trial):
-        return sensitivities(trial.scenario, trial.actuator.subject(), names, records=trial.records)
+        inputs, records = trial.inputs()
+        return sensitivities(inputs, trial.actuator.subject(), names, records=records)
 
 
 @guarded
@@ -333,13 +409,30 @@ def verify_dynamics(
     ----------
     scenario : the scenario as read, or the path of its file
     design : a design in place of the scenario's own; it gets the values that the scenario sets
+
+    Raises
+    ------
+    InputError
+        the scenario simulates a duty cycle, in which the load has no mass
     """
     from ..simulation.verification import verify
 
     trial = as_trial(scenario)
+    _require_load(trial)
     actuator = trial.actuator if design is None else fitting(trial, design)
     with placed(trial):
-        return verify(trial.scenario, actuator.subject(), records=trial.records)
+        inputs, records = trial.inputs(actuator)
+        return verify(inputs, actuator.subject(), records=records)
+
+
+def _require_load(trial: Trial) -> None:
+    """Refuse the scenario of a duty cycle, in which the load has no mass."""
+    if trial.scenario.cycle is not None:
+        message = (
+            "dynamic requirements depend on the mass of the load, which a duty cycle leaves out"
+        )
+        remedy = "use a scenario with control or signal in place of cycle"
+        raise InputError(replace(trial.loaded.diagnostic("cycle", message), remedy=remedy))
 
 
 def fitting(trial: Trial, design: Actuator | Design | Result | str | Path) -> Actuator:
@@ -348,9 +441,10 @@ def fitting(trial: Trial, design: Actuator | Design | Result | str | Path) -> Ac
     Raises
     ------
     InputError
-        the scenario does not fit this design, or has a motor or held ports in place of a
-        cylinder
+        the scenario does not fit this design, has a motor or held ports in place of a cylinder,
+        or simulates a duty cycle
     """
+    _require_load(trial)
     scenario = trial.scenario
     for key in ("motor", "held_ports"):
         if getattr(scenario, key) is not None:
@@ -412,9 +506,10 @@ def write_simulation(
     if scenario is None:
         message = "the page of a simulation needs its scenario"
         raise UsageError(Diagnostic(message, "give scenario=read_scenario(...)"))
-    simulation = with_margins(simulation, scenario.records)
+    simulation = with_margins(simulation, scenario.inputs()[1])
     origin, place = _page(scenario, simulation, "", paper)
-    blocks = [] if measured is None else measured.blocks()
+    blocks = published(simulation)
+    blocks += [] if measured is None else measured.blocks()
     blocks += [] if sensitivities is None else sensitivity_blocks(sensitivities)
     record = None if measured is None else drawn(measured.overlay)
     report = page(simulation, measured=record, extra=blocks)
@@ -449,7 +544,8 @@ def write_comparison(
     from ..rendering import paper as printed
     from ..simulation.run import with_margins
 
-    runs = [(name, with_margins(run, scenario.records)) for name, run in runs]
+    records = scenario.inputs()[1]
+    runs = [(name, with_margins(run, records)) for name, run in runs]
     report = page(comparison(runs, title, notes))
     origin, place = _page(scenario, runs[0][1], "-compared", paper)
     return printed.write(report, origin, **place)
@@ -461,6 +557,8 @@ def _page(
     """The result of `page_of` for a scenario; its file is attached and gives the page its name."""
     source = scenario.loaded.source
     name = "scenario.yaml" if source.file.startswith("<") else Path(source.file).name
+    if source.file.startswith("<") and scenario.scenario.cycle is not None:
+        name = f"{scenario.loaded.design_file.stem}-{scenario.scenario.cycle}.yaml"
     paper["actuator"] = scenario.actuator
     page, place = page_of(scenario.actuator.design, tail, beside=name, **paper)
     spec_hash = simulation.spec_hash or page.spec_hash

@@ -111,6 +111,7 @@ INPUTS = _table("""
  thread_diameter      | d_t    | length      | mm   | 1     | 500   | nominal thread diameter
  thread_pitch         | P      | length      | mm   | 0.2   | 12    | thread pitch
  diameter             | d      | length      | mm   | 0.5   | 1000  | diameter
+ line_diameter        | d      | length      | mm   | 0.5   | 1000  | inner diameter of a line
  volume               | V      | volume      | ml   | 0     | 100000| volume
  pressure             | p      | pressure    | bar  | 0     | 1500  | gauge pressure
  working_pressure     | p_s    | pressure    | bar  | 1     | 1500  | supply gauge pressure
@@ -147,6 +148,9 @@ INPUTS = _table("""
  frequency            | f      | frequency   | Hz   | 0.001 | 100000| frequency
  rated_flow           | q_r    | flow        | l/min| 0.001 | 100000| rated flow
  leakage_flow         | q_l    | flow        | l/min| 0     | 1000  | leakage flow
+ edge_coefficient     | K      | flow_coefficient | l/min/sqrt(bar) | 0.0001 | 100000 | flow coefficient of a metering edge
+ hysteresis           | H      | ratio       | %    | 0     | 50    | hysteresis of a valve
+ threshold            | T      | ratio       | %    | 0     | 50    | threshold of a valve
  pressure_drop        | dp     | pressure    | bar  | 0.01  | 1500  | pressure drop
  spool_stroke         | x_s    | length      | mm   | 0.01  | 100   | stroke of a spool from its centre
  spool_overlap        | o      | length      | um   | -5000 | 5000  | overlap of an edge; negative: open at the centre
@@ -378,6 +382,12 @@ BASIS = _table("""
  edge_flow            | q_e    | flow        | l/min     | | | flow through an open edge of the valve at 1 bar
  supply_leakage       | q_ls   | flow        | l/min     | | | leakage of a supply edge at 1 bar, spool centred
  tank_leakage         | q_lt   | flow        | l/min     | | | leakage of a tank edge at 1 bar, spool centred
+ edge_flow_pa         | q_pa   | flow        | l/min     | | | flow through the open edge P to A at 1 bar
+ edge_flow_pb         | q_pb   | flow        | l/min     | | | flow through the open edge P to B at 1 bar
+ edge_flow_at         | q_at   | flow        | l/min     | | | flow through the open edge A to T at 1 bar
+ edge_flow_bt         | q_bt   | flow        | l/min     | | | flow through the open edge B to T at 1 bar
+ valve_hysteresis     | H      | voltage     | V         | | | hysteresis of the valve
+ valve_threshold      | T      | voltage     | V         | | | threshold of the valve
  full_signal          | U      | voltage     | V         | | | signal at full opening
  spool_offset         | U_0    | voltage     | mV        | | | signal that centres the spool
  edge_width           | w      | length      | mm        | | | width of the valve edge P to A

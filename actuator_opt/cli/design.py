@@ -38,7 +38,7 @@ from .options import (
 
 if TYPE_CHECKING:
     from ..api import Restored
-    from ..api.starting import Duty
+    from ..api.starting import Duty, Start
     from ..api.starting_cycle import CycleStart
 
 
@@ -177,11 +177,7 @@ def init(
     if answers or cycle or yes or (out is not None and not copied):
         found = _cycle(cycle, answers, out)
         duty = _duty(answers, ask=not as_json, defaults=yes)
-        from ..api.starting import solved_start
-
-        start = job.run(solved_start, duty, **title)
-        if found is not None:
-            start = found.added_to(start)
+        start = _solved(job, duty, found, title)
         text, verdict = start.text, {"met": start.met}
         if start.met:
             remarks = [f"{duty.words}, solved: {start.solved}; edit it, or optimise it"]
@@ -221,6 +217,14 @@ def _target(name: str | None, out: Path | None) -> tuple[dict[str, str], Path | 
         raise UsageError(Diagnostic("exists already", "choose another name", str(out)))
     store.require_writable(out)
     return title, out
+
+
+def _solved(job: Job, duty: Duty, cycle: CycleStart | None, title: dict[str, str]) -> Start:
+    """The solved start design named by `title`, with its cycle."""
+    from ..api.starting import solved_start
+
+    start: Start = job.run(solved_start, duty, **title)
+    return start if cycle is None else cycle.added_to(start)
 
 
 def _cycle(file: str | None, answers: dict[str, str], out: Path | None) -> CycleStart | None:
@@ -345,11 +349,18 @@ def check(
     return ExitCode.BAD_INPUT if faults else ExitCode.MET
 
 
+TracesFile = Annotated[
+    Path | None,
+    typer.Option("--csv", metavar="FILE", help="Save the traces of all duty cycles."),
+]
+
+
 def evaluate(
     design: DesignFile,
     sets: Set = None,
     unset: Unset = None,
     plugin: PluginFile = None,
+    csv: TracesFile = None,
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
@@ -364,7 +375,7 @@ def evaluate(
     from .. import api as verbs
 
     job = Job(
-        design, sets=sets, unset=unset, plugins=plugin, report=report, out=out, date=date,
+        design, sets=sets, unset=unset, plugins=plugin, csv=csv, report=report, out=out, date=date,
         all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet, verbose=verbose,
     )  # fmt: skip
@@ -454,7 +465,13 @@ def compare(
 
 
 def export(
-    design: DesignFile,
+    design: Annotated[
+        str,
+        typer.Argument(
+            metavar="DESIGN",
+            help="Design file, or scenario that names its design (c or fmu), or - for stdin.",
+        ),
+    ],
     formats: Annotated[
         list[str] | None,
         typer.Option("--format", metavar="step|dxf|xlsx|c|fmu", help="File format. Repeatable."),
@@ -483,17 +500,25 @@ def export(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Export the design to CAD (STEP, DXF), Excel, C or FMI."""
+    """Export a design to CAD, Excel, C; a scenario to C, FMI."""
     from .. import api as verbs
+    from ..api.exports import is_exported_scenario
     from ..exports import require_formats
 
-    known = require_formats(formats or [], scenario=scenario is not None)
+    alone = scenario is None and is_exported_scenario(design, formats or ())
+    known = require_formats(formats or [], scenario=scenario is not None or alone)
+    if alone and plugin:
+        remedy = "give the design, and the scenario by --scenario"
+        raise UsageError(Diagnostic("--plugin: not with a scenario alone", remedy))
     job = Job(
         design, sets=sets, unset=unset, plugins=plugin, report=True, out=out, date=date,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
     options: dict[str, Any] = {"formats": known, "folder": out, "date": date}
-    if scenario is None:
+    if alone:
+        evaluation = None
+        exports = job.run(verbs.export, verbs.read_scenario(design, set=job.set), **options)
+    elif scenario is None:
         evaluation = job.run(verbs.evaluate)
         exports = verbs.export(evaluation, actuator=job.actuator, **options)
     else:

@@ -204,21 +204,30 @@ def seal(
 
 
 ScenarioFile = Annotated[
-    str, typer.Argument(metavar="SCENARIO", help="Scenario file, or - for stdin.")
+    str,
+    typer.Argument(
+        metavar="SCENARIO", help="Scenario file, or - for stdin; with --cycle, a design file."
+    ),
+]
+CycleName = Annotated[
+    str | None,
+    typer.Option(
+        "--cycle",
+        metavar="NAME",
+        help="Simulate this duty cycle of a design, and compare with its quasi-static results.",
+    ),
+]
+Periods = Annotated[
+    int | None,
+    typer.Option(
+        "--periods", min=1, max=100, metavar="N", help="Periods of the duty cycle (default 3)."
+    ),
 ]
 Verify = Annotated[
     bool,
     typer.Option(
         "--verify",
         help="Integrate again by the Radau method; show the largest difference of the results.",
-    ),
-]
-Fast = Annotated[
-    bool,
-    typer.Option(
-        "--fast",
-        help='Integrate by CVODES (pip install "actuator-opt[fast]"); it takes 1.8 to 3.1 times as '
-        "long as the default, whose equations are compiled.",
     ),
 ]
 SignalsFile = Annotated[
@@ -273,10 +282,11 @@ def simulate(
     scenario: ScenarioFile,
     sets: Set = None,
     unset: Unset = None,
+    cycle: CycleName = None,
+    periods: Periods = None,
     csv: SignalsFile = None,
     verify: Verify = False,
     margins: Margins = False,
-    fast: Fast = False,
     measured: MeasuredFile = None,
     fit: Fitted = None,
     columns: RecordColumns = None,
@@ -292,25 +302,29 @@ def simulate(
     quiet: Quiet = False,
     seed: UnusedSeed = 0,
 ) -> ExitCode:
-    """Simulate a scenario: servo, pressures, energy."""
+    """Simulate a scenario, or a duty cycle of a design: servo, pressures, energy."""
     from .. import api as verbs
 
     for name, values in (("--fit", fit), ("--column", columns)):
         if values and measured is None:
             raise UsageError(Diagnostic(f"{name}: only with --measured", "name the record"))
+    if periods is not None and cycle is None:
+        raise UsageError(Diagnostic("--periods: only with --cycle", "name the duty cycle"))
     job = Job(
         scenario, [*filter(None, [measured]), *file_of_units(units)], sets=sets, unset=unset,
         csv=csv, report=report, out=out, date=date, all_pages=all_pages, format=format,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
-    trial = verbs.read_scenario(scenario, set=job.set, units=units)
+    if cycle is None:
+        trial = verbs.read_scenario(scenario, set=job.set, units=units)
+    else:
+        trial = verbs.cycle_scenario(scenario, cycle, periods=periods or 3, set=job.set)
     if units is not None and measured is None and not trial.records:
         raise UsageError(Diagnostic("--units: only with a record", "remove it"))
     if csv is not None:
         require_apart(csv, *map(str, trial.files))
     job.paper["scenario"] = trial
     options: dict[str, Any] = {"verify": verify, "margins": margins}
-    options |= {"method": "cvodes" if fast else "lsoda"}
     if measured is None:
         compared, simulation = None, job.run(verbs.simulate, trial, **options)
     else:

@@ -30,6 +30,7 @@ from .structure import (
     leaves,
     meanings,
     section_at,
+    value_at,
 )
 
 MOST_FAULTS = 100
@@ -225,12 +226,18 @@ def _unknown_key(loc: Loc, root: type[Section], *, near: bool) -> Fault:
     return Fault(loc, "unknown key", errors.remedy(str(loc[-1]), names), at_key=True)
 
 
-def to_tree(section: Section) -> dict[str, Any]:
-    """Convert a design or a block to dicts, lists, texts and SI numbers; omit unset values."""
+def to_tree(section: Section, *, stated: bool = False) -> dict[str, Any]:
+    """Convert a design or a block to dicts, lists, texts and SI numbers; omit unset values.
+
+    With `stated`, values that are not stated are omitted too, though they have a default: a check
+    may allow a key only if another key is not stated.
+    """
 
     def plain(value: Any) -> Any:
         if isinstance(value, Section):
-            pairs = ((name, getattr(value, name)) for name in type(value).model_fields)
+            fields = type(value).model_fields
+            names = value.model_fields_set if stated else fields.keys()
+            pairs = ((name, getattr(value, name)) for name in fields if name in names)
             return {name: plain(below) for name, below in pairs if below is not None}
         if isinstance(value, Mapping):
             return {key: plain(below) for key, below in value.items()}
@@ -250,9 +257,9 @@ def with_values(
 ) -> Design:
     """Copy a design with changed values by PATH (SI numbers, or texts with units); check it.
 
-    The value None removes a key or block, and the word `none` the optional block that requires the
-    key (see `is_removed_by_none`), both with their variables. If an optimisation variable started
-    at the old value, it now starts at the new value. Without
+    The value None removes a key or block before any value is set, and the word `none` the optional
+    block that requires the key (see `is_removed_by_none`), both with their variables. If an
+    optimisation variable started at the old value, it now starts at the new value. Without
     `contradictions` values may contradict each other; this is needed where a search found no
     feasible design.
 
@@ -261,13 +268,15 @@ def with_values(
     InputError
         if a PATH has no value, a value is unsuitable, or the new values contradict each other
     """
-    tree = to_tree(design)
-    diagnostics, removed = [], list[Loc]()
-    for path, value in values.items():
+    tree = to_tree(design, stated=True)
+    diagnostics, removed, unset = [], list[Loc](), list[Loc]()
+    for path, value in sorted(values.items(), key=lambda change: change[1] is not None):
         try:
             if value is None:
-                removed.append(stated(path, tree, metrics))
+                unset.append(stated(path, tree, metrics))
                 continue
+            while unset:  # before any value is set
+                remove(tree, unset.pop())
             target = resolve(path, tree, metrics)
         except ValueFault as fault:
             message = fault.message.removeprefix(f"{path}: ")
@@ -277,12 +286,12 @@ def with_values(
             removed.append(target.loc[:-1])
             continue
         number = float(value) if isinstance(value, (int, float)) else value
-        old = child_at(tree, target.loc)
+        old = value_at(tree, target.loc)
         put(tree, target, number)
         variable = tree.get("variables", {}).get(target.path)
         if variable is not None and variable.get("start") == old:
             variable["start"] = number
-    for block in removed:
+    for block in (*unset, *removed):
         remove(tree, block)
     diagnostics += [
         Diagnostic(fault.message, fault.remedy, path=spell(fault.loc, tree))

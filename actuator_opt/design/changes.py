@@ -13,7 +13,7 @@ from ..base.errors import Diagnostic, Fault
 from ..base.quantities import Quantity
 from .build import copy_tree
 from .kinds import Section, ValueFault
-from .paths import put, remove, resolve, spell, stated
+from .paths import LEAVE_OUT, put, remove, resolve, spell, stated
 from .structure import Loc, child_at
 from .yaml_source import Document
 
@@ -29,9 +29,10 @@ class Override(NamedTuple):
     If the new value comes from another file, `file` and `loc` are its location there; `file` is
     None for the command line.
 
-    None comes from ``--unset PATH``. A word, as in ``PATH=none``, would collide with values of that
-    name: ``back_up: none`` states that there is no back-up ring, and ``none`` in `choices` removes
-    a whole block. A removed key instead takes its default, or is missing.
+    None comes from ``--unset PATH`` or the list ``unset`` of a scenario. A word, as in
+    ``PATH=none``, would collide with values of that name: ``back_up: none`` states that there is no
+    back-up ring, and ``none`` in `choices` removes a whole block. A removed key instead takes its
+    default, or is missing.
     """
 
     path: str
@@ -46,8 +47,9 @@ class Override(NamedTuple):
         if self.file is None:
             origin = UNSET if self.value is None else SET
             return Diagnostic(message, remedy, origin, path=path)
-        spans = self.file.keys if at_key else self.file.values
-        return self.file.diagnostic(spans.get(self.loc), message, remedy, path)
+        span = self.file.keys.get(self.loc) if at_key else None
+        span = span or self.file.values.get(self.loc)
+        return self.file.diagnostic(span, message, remedy, path)
 
 
 def pairs(changes: SetValues) -> list[Change]:
@@ -107,7 +109,10 @@ def changed(
             result.places[loc] = change
         except ValueFault as fault:
             message, shown = fault.message.removeprefix(f"{path}: "), errors.shown(path, 120)
-            result.faults.append(change.diagnostic(message, fault.remedy, shown, at_key=True))
+            remedy = fault.remedy
+            if file is not None and remedy == LEAVE_OUT:
+                remedy = "remove this entry"
+            result.faults.append(change.diagnostic(message, remedy, shown, at_key=True))
     return result
 
 
@@ -179,6 +184,8 @@ def _advice(choice: Override, keys: Sequence[str]) -> Diagnostic:
     listed = " and ".join(filter(None, (", ".join(keys[:-1]), keys[-1])))
     verb = "has" if len(keys) == 1 else "have"
     options = " ".join(f"{UNSET} {_word(key)}" for key in keys)
+    if choice.file is not None:
+        options = f'{listed} to the list "unset" of the scenario'
     new = "without it" if choice.value is None else f"with {errors.shown(choice.value)}"
     message = f"{new}, {listed} {verb} no meaning"
     return choice.diagnostic(message, f"add {options}", errors.shown(choice.path, 120))

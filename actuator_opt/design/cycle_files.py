@@ -63,7 +63,8 @@ class CycleFile(str):
         if not self.inside:
             return str.__str__(self)
         first = self.partition("\n")[0].strip()
-        return shown(first.removeprefix(_NAMED)) if first.startswith(_NAMED) else "text"
+        named = first.startswith(_NAMED)
+        return shown(first.removeprefix(_NAMED)) if named else "text of the cycle"
 
     @property
     def place(self) -> str:

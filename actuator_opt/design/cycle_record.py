@@ -21,7 +21,7 @@ from ..base.errors import Diagnostic, InputError, remedy as remedy_for, shown
 from ..base.files import read_bytes
 from ..base.numeric import Array
 from ..base.quantities import INPUTS
-from ..base.sheet import Sheet, converted, decode_record, header_cells, numbers, read_sheet
+from ..base.sheets import Sheet, converted, decode_sheet, header_cells, numbers, read_sheet
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -264,7 +264,7 @@ def read_cycle(
 def cycle_text(path: Path) -> str:
     """The text of a cycle's file; at most `MOST_BYTES` are read. Raises `InputError`."""
     data = read_bytes(path, most=MOST_BYTES + 1, kinds=(".csv", ".txt"), what="CSV file")
-    return decode_record(data, str(path))
+    return decode_sheet(data, str(path))
 
 
 def parse_cycle(

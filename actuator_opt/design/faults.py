@@ -78,6 +78,8 @@ def _row(view: FileView, loc: Loc, row: Callable[[str], Row]) -> Row | None:
 
 def _closed(view: FileView) -> float | None:
     """Pin-to-pin length of the retracted actuator; None if a length that it needs is unknown."""
+    if view.has("ideal"):
+        return view.number("ideal", "closed_length")
     stroke, piston = view.number("cylinder", "stroke"), view.number("piston", "length")
     head = view.number("head", "length") if view.has("head") else piston
     barrel = view.number("barrel", "length")

@@ -30,7 +30,7 @@ _PARTS: Mapping[str, Any] = {
 
 _UNUSED = (
     *_PARTS, "second_rod", "head", "retention", "clevis", "sensor", "cushion", "extra_masses",
-    "stiffness", "linkage", "duty", "variables", "choices", "requirements", "waivers", "measured",
+    "stiffness", "duty", "variables", "choices", "requirements", "waivers", "measured",
     "uncertainty", "objective",
 )  # fmt: skip
 """Blocks that mean nothing beside `ideal`."""
@@ -52,6 +52,9 @@ class Ideal(Section):
         float | None, Of("stiffness", "of rod and mount in series; default: rigid")
     ] = None
     leakage: Annotated[float, Of("conductance", "flow across the piston per pressure")] = 0.0
+    closed_length: Annotated[
+        float | None, Of("part_length", "from pin to pin at zero stroke; for a linkage")
+    ] = None
 
 
 def completed(tree: dict[str, Any]) -> tuple[dict[str, Any], list[Fault]]:
@@ -67,10 +70,23 @@ def completed(tree: dict[str, Any]) -> tuple[dict[str, Any], list[Fault]]:
         for name in _UNUSED
         if name in tree
     ]  # fmt: skip
+    faults += _closed_length(tree)
     parts = copy.deepcopy(dict(_PARTS))
     if (stroke := tree["ideal"].get("stroke")) is not None:  # positions are checked against it
         parts["cylinder"]["stroke"] = stroke
     return parts | {key: value for key, value in tree.items() if key not in _UNUSED}, faults
+
+
+def _closed_length(tree: Mapping[str, Any]) -> list[Fault]:
+    """The fault of a linkage without the length of the cylinder, or of a length without linkage."""
+    stated, linked = "closed_length" in tree["ideal"], "linkage" in tree
+    if stated == linked:
+        return []
+    if stated:
+        message, remedy = "has no effect without linkage", "remove it, or add linkage"
+        return [Fault(("ideal", "closed_length"), message, remedy, at_key=True)]
+    message = "closed_length: missing beside a linkage"
+    return [Fault(("ideal",), message, 'add e.g. "closed_length: 300 mm", from pin to pin')]
 
 
 def has_effect(path: str, stated: Ideal | None) -> bool:

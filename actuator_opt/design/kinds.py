@@ -33,8 +33,8 @@ EXAMPLES = {
     "tolerance": "0.05 mm",
     "cross_section": "3.53 mm", "squeeze": "12 %", "stretch": "2 %", "groove_width": "4.8 mm",
     "seal_count": "1", "bolt_count": "4", "thread_diameter": "10 mm", "thread_pitch": "1.5 mm",
-    "diameter": "6 mm", "volume": "2 ml", "pressure": "2 bar", "working_pressure": "100 bar",
-    "temperature": "40 degC",
+    "diameter": "6 mm", "line_diameter": "6 mm", "volume": "2 ml", "pressure": "2 bar",
+    "working_pressure": "100 bar", "temperature": "40 degC",
     "temperature_rise": "10 K", "air_content": "0.5 %", "force": "3 kN", "torque": "120 N*m",
     "lever_arm": "40 mm", "pivot_radius": "60 mm", "joint_angle": "30 deg",
     "joint_speed": "3 rad/s", "load_inertia": "0.5 kg*m^2",
@@ -44,7 +44,8 @@ EXAMPLES = {
     "safety_factor": "1.5", "cycles": "20000", "stiffness": "50 kN/mm", "coefficient": "1",
     "surface_roughness": "0.2 um", "rms_roughness": "0.2 um", "taper": "6 deg",
     "frequency": "20 Hz", "rated_flow": "10 l/min",
-    "leakage_flow": "0.1 l/min", "pressure_drop": "35 bar", "signal": "10 V",
+    "leakage_flow": "0.1 l/min", "edge_coefficient": "1.7 l/min/sqrt(bar)",
+    "hysteresis": "3 %", "threshold": "0.5 %", "pressure_drop": "35 bar", "signal": "10 V",
     "signal_offset": "0.1 V", "gain": "500 V/m", "oil_viscosity": "32 mm^2/s",
     "damping_ratio": "0.7", "orifice_area": "0.2 cm^2", "opening": "50 %",
     "conductance": "20 ml/min/bar", "gas_volume": "50 ml", "precharge": "30 bar",
@@ -99,6 +100,13 @@ def _range_fault(shown_value: str, number: float, quantity: Quantity) -> ValueFa
         message = f"{shown_value}: must be {'> 0' if quantity.lower > 0 else '>= 0'}"
     elif number != number:
         message = f"{shown_value}: is not a number"
+    elif quantity.name == "line_diameter" and number < quantity.lower:
+        times, least = (quantity.lower / number) ** 4, quantity.text(quantity.lower)
+        message = (
+            f"{shown_value}: too thin for a line: its laminar pressure drop, which grows with "
+            f"1/d^4, is {times:.3g} times that of {least}"
+        )
+        return ValueFault(message, f"write {least} or more; a restriction is a ports.throttle")
     else:
         message = f"{shown_value}: outside the valid range ({quantity.label})"
     return ValueFault(message, f"write {quantity.range_text()}")

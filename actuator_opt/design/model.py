@@ -43,7 +43,7 @@ class Line(Section):
     chamber: choices.Chamber
     type: choices.LineType = "pipe"
     length: Annotated[float, Of("part_length", "length of the line")]
-    inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
+    inner_diameter: Annotated[float, Of("line_diameter", "inner diameter")]
     outer_diameter: Annotated[float, Of("diameter", "outer diameter")]
     material: Annotated[str, MaterialName("isotropic")]
     loss_coefficient: Annotated[float, Of("loss_coefficient", "sum for bends, fittings")] = 0.0

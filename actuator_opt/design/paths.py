@@ -31,6 +31,8 @@ _ENDS = {
     "uncertainty": ("distribution", *NUMBERS, "tolerance", "source"),
 }
 _LIMITS = ("min", "max")
+LEAVE_OUT = "leave out this option"
+"""Remedy for a PATH to unset that the file does not state."""
 _TEXTS = ("waivers", "set")
 _TABLES = (*_ENDS, *_TEXTS, "requirements", "materials", "objective")
 
@@ -375,7 +377,8 @@ def remove(tree: dict[str, Any], loc: Loc) -> None:
     node.pop(loc[-1], None)
     needed = _LIMITS if loc[0] == "requirements" else tuple(node)
     if len(loc) > 2 and loc[0] in _TABLES and not any(key in node for key in needed):
-        tree[loc[0]].pop(loc[1], None)  # an entry of a table that states no limit or value any more
+        # an entry of a table that states no limit or value any more
+        (tree.get(loc[0]) or {}).pop(loc[1], None)
     for table in filter(None, map(tree.get, _ENDS)):
         for path in list(table):
             if path == name or path.startswith((f"{name}.", f"{name}[")):
@@ -408,7 +411,7 @@ def stated(
     if not loc:
         if path.strip() not in blocks(root):
             resolve(path, tree, metrics, root)
-        raise ValueFault(f"{path}: is not stated, so it cannot be unset", "leave out this option")
+        raise ValueFault(f"{path}: is not stated, so it cannot be unset", LEAVE_OUT)
     if isinstance(loc[-1], int):
         raise ValueFault(f"{path}: an entry of a list cannot be unset", "change it in the file")
     return loc

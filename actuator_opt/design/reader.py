@@ -16,7 +16,7 @@ from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, Fault, InputError
 from ..base.files import read_bytes
 from ..base.quantities import Quantity
-from . import layup
+from . import flow_tables, layup
 from .build import MOST_FAULTS, Root, build
 from .changes import Changed, Override, changed, meaningless
 from .cycle_files import CycleFile
@@ -141,17 +141,20 @@ def read_design(
     folder = Path() if file in (TEXT, STDIN) else Path(source).parent
     known = {name: CycleFile(name, text, str(folder)) for name, text in (files or {}).items()}
     beside: list[Diagnostic] = []
+    document = layup.expanded(parse(text, file))
 
     def build_design(tree: dict[str, Any]) -> tuple[Design | None, Sequence[Fault]]:
         lookup = library() if materials is None else materials
-        whole, unused = completed(tree)
+        with_tables, unread = flow_tables.attached(tree, flow_tables.OF_DESIGN, document)
+        if unread:
+            return None, unread
+        whole, unused = completed(with_tables)
         cycle_faults = list(attach(whole, folder, known))
         beside[:] = [fault for fault in cycle_faults if isinstance(fault, Diagnostic)]
         built = build(whole, materials=lookup, metrics=metrics)
         faults = [*unused, *built.faults, *(x for x in cycle_faults if isinstance(x, Fault))]
         return (None if faults else built.design), faults
 
-    document = layup.expanded(parse(text, file))
     return LoadedDesign(*load(document, Design, build_design, overrides, metrics, beside))
 
 
@@ -207,9 +210,9 @@ _MARKS = {"design": "cylinder", "scenario": "design"}
 
 
 def is_scenario(source: str | Path) -> bool:
-    """Whether a file, or a text of several lines, is a scenario."""
+    """Whether a file, or a text of several lines, is a scenario, even if it names no design."""
     data = parse(*opened(source, "design")).data
-    return _MARKS["scenario"] in data and _MARKS["design"] not in data
+    return (_MARKS["scenario"] in data or "duration" in data) and _MARKS["design"] not in data
 
 
 def _require_kind(document: Document) -> None:

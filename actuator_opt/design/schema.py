@@ -38,6 +38,7 @@ from .structure import (
     NONE,
     KeyEntry,
     MaterialLookup,
+    blocks,
     entries,
     is_removed_by_none,
     purpose,
@@ -262,6 +263,7 @@ def json_schema(
     schema = section_schema(root, materials)
     tables: dict[str, Callable[[], Schema]] = {
         "set": lambda: _set(materials, definitions),
+        "unset": _unset,
         "variables": lambda: _variables(definitions),
         "measured": lambda: _measured(definitions),
         "uncertainty": lambda: _uncertainty(definitions),
@@ -430,6 +432,20 @@ def _set(materials: MaterialLookup | None, definitions: Schema) -> Schema:
     schema = _by_path(schemas)
     schema["patternProperties"][_OF_TABLES] = {"type": ["string", "number"]}
     return {"description": "Values of the design that the scenario changes, by PATH."} | schema
+
+
+def _unset() -> Schema:
+    paths = (*templates(), *blocks())
+    patterns = (r"\[[^\[\]]+\]".join(map(re.escape, path.split("[*]"))) for path in paths)
+    return {
+        "description": "Keys and blocks of the design that the scenario removes, before set.",
+        "items": {
+            "title": "PATH of the design",
+            "type": "string",
+            "pattern": f"^({'|'.join(patterns)})$|{_OF_TABLES}",
+            "examples": [path for path in paths if "[*]" not in path],
+        },
+    }
 
 
 def _choices() -> Schema:

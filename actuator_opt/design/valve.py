@@ -6,6 +6,7 @@ from pydantic import Field
 
 from ..models.orifice import TURBULENT_COEFFICIENT
 from . import choices
+from .flow_curve import FlowCurve, FlowTable
 from .kinds import Of, Section
 
 
@@ -48,7 +49,10 @@ class Spool(Section):
     ] = 0.0
     clearance: Annotated[
         float | None,
-        Of("spool_clearance", "radial clearance of the spool; default: the edges do not leak"),
+        Of(
+            "spool_clearance",
+            "radial clearance of the spool, or state valve.leakage_flow; default: no leakage",
+        ),
     ] = None
     rounding: Annotated[float, Of("edge_rounding", "radius of the corners of every edge")] = 0.0
     area_gradient: Annotated[
@@ -69,24 +73,44 @@ class Spool(Section):
     bt: StatedEdge | None = None
 
 
+class EdgeCoefficients(Section):
+    """Flow coefficients K of the fully open edges, q = K sqrt(dp)."""
+
+    pa: Annotated[float, Of("edge_coefficient", "K of the open edge from supply to port A")]
+    pb: Annotated[float, Of("edge_coefficient", "K of the open edge from supply to port B")]
+    at: Annotated[float, Of("edge_coefficient", "K of the open edge from port A to tank")]
+    bt: Annotated[float, Of("edge_coefficient", "K of the open edge from port B to tank")]
+
+
 class Valve(Section):
-    """A proportional or servo valve with four control edges that open linearly with the signal."""
+    """A proportional or servo valve with four metering edges."""
 
     rated_flow: Annotated[
         float | None,
         Of(
             "rated_flow",
-            "flow through one metering edge at full signal; or state valve.spool.area_gradient",
+            "flow through one metering edge at full signal; or state edge_coefficients, "
+            "flow_curve or spool.area_gradient",
         ),
     ] = None
     rated_drop: Annotated[
-        float, Of("pressure_drop", "pressure drop across the edge at rated flow")
+        float,
+        Of("pressure_drop", "pressure drop across the edge at rated flow, or of the flow curve"),
     ] = 35e5
+    edge_coefficients: EdgeCoefficients | None = None
+    flow_curve: Annotated[
+        FlowTable | None,
+        FlowCurve(
+            "flow over signal at rated_drop, as CSV: a file in the folder of the design, or the "
+            "table itself; columns: signal [%] or [V]; q [l/min], or q_pa, q_pb, q_at and q_bt"
+        ),
+    ] = None
     leakage_flow: Annotated[
         float,
         Of(
             "leakage_flow",
-            "leakage of one metering edge with centred spool: half of the valve's leakage",
+            "leakage of one metering edge with centred spool: half of the valve's leakage; with a "
+            "lapped spool, the clearance follows from it",
         ),
     ] = 0.0
     leakage_drop: Annotated[
@@ -125,5 +149,21 @@ class Valve(Section):
     slew_rate: Annotated[
         float | None,
         Of("signal_rate", "fastest motion of the spool in volts of signal; default: no limit"),
+    ] = None
+    hysteresis: Annotated[
+        float | None,
+        Of(
+            "hysteresis",
+            "largest difference of the signals that give the same flow over a cycle, as a share of "
+            "the full signal, in simulations",
+        ),
+    ] = None
+    threshold: Annotated[
+        float | None,
+        Of(
+            "threshold",
+            "change of the signal that reverses the flow's change after a stop, as a share of the "
+            "full signal, in simulations; default: hysteresis",
+        ),
     ] = None
     spool: Spool | None = None

@@ -29,6 +29,7 @@ from ..metrics import METRICS, MetricRow
 from ..metrics.table import CHECKS
 from ..version import VERSION
 from . import dynamics_study as dynamics, outline, validity as doubts, valve_study, weight
+from .duty_cycles import remedies
 from .duty_cycles.study import DutyStudy, study as duty_study
 from .film import floats
 from .kernel import ModelRun, PreparedDesign, compute, duty_numbers, governing
@@ -228,9 +229,21 @@ def _blocks(retention: dict[str, Any] | None) -> Iterator[dict[str, Any]]:
 
 def leave_out_unset(valve: dict[str, Any] | None) -> None:
     """Drop unset keys from the dump of a valve, so that hashes of older designs stay valid."""
-    for key in ("frequency_90deg", "frequency_3db", "slew_rate", "spool"):
+    for key in (
+        "frequency_90deg",
+        "frequency_3db",
+        "slew_rate",
+        "spool",
+        "edge_coefficients",
+        "flow_curve",
+        "hysteresis",
+        "threshold",
+    ):
         if valve and valve[key] is None:
             del valve[key]
+    if valve and "flow_curve" in valve:  # its numbers count, not the name of its file
+        table = valve["flow_curve"]
+        valve["flow_curve"] = {name: table[name] for name in ("in_volts", "signal", "flows")}
 
 
 def spec_hash(subject: PreparedDesign) -> str:
@@ -281,13 +294,15 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
         for limit in limits
         if limit.origin in ("requirement", "case")
     )
-    warnings = list(doubts.warnings(subject, v, run))
+    duty = _duty(subject, v)
+    warnings = list(doubts.warnings(subject, v, run, duty))
     outside = {metric for metric, _ in warnings}
     metrics = {name: _metric(name, computed, v, subject, outside) for name in subject.quantities}
     checks = tuple(_checks(design, computed, v, requirements, run.rings))
     warnings += [
         ("", f"check missed: {c.name}: {_against(c)}") for c in checks if c.status == "missed"
     ]
+    warnings += [("", text) for text in _cures(subject, duty, checks)]
     return Evaluation(
         name=design.name,
         version=VERSION,
@@ -306,8 +321,8 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
         lengths=outline.lengths(design, run.geometry),
         wall=wall_study(subject, v, run),
         dynamics=dynamics.study(subject, v, run, metrics["stiffness_min"].case),
-        valve=valve_study.study(design, v, run.state),
-        duty=_duty(subject, v),
+        valve=valve_study.study(design, v, run.state, metrics["position_gain"].value),
+        duty=duty,
         friction_parts=_friction_parts(computed, v, metrics["friction_running"].case),
     )
 
@@ -318,6 +333,23 @@ def _duty(subject: PreparedDesign, v: Values) -> DutyStudy | None:
         return None
     models, numbers = duty_numbers(subject, v)
     return duty_study(models, numbers[:, 0], ())
+
+
+def _cures(
+    subject: PreparedDesign, duty: DutyStudy | None, checks: Sequence[Check]
+) -> Iterator[str]:
+    """Yield a sentence for every missed check of the duty cycles: the shortfall and its cures."""
+    own = [c for c in checks if c.metric in remedies.CHECKED and c.status != "not_checked"]
+    missed = [c.metric for c in own if c.status == "missed" and c.metric is not None]
+    if duty is None or not missed:
+        return
+    limits = {
+        c.metric: (c.sense, c.limit)
+        for c in own
+        if c.metric is not None and c.sense is not None and c.limit is not None
+    }
+    for shortfall in remedies.shortfalls(subject, duty, limits, missed):
+        yield shortfall.sentence(subject.design)
 
 
 def _friction_parts(computed: MetricArrays, v: Values, case: str | None) -> dict[str, float]:

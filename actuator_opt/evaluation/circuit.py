@@ -10,8 +10,8 @@ from ..base.dataclass import dataclass
 from ..base.numeric import Array, maximum, where
 from ..design.model import Design, Line
 from ..models import accumulator, elements, holding_valve, line_ends, lines, one_way_valve
-from ..models.lapped_spool import BothSlopes, LappedSpool, lapped_slopes
 from ..models.line_ends import LineEnd
+from ..models.metering_spool import BothSlopes, MeteringSpool, held_slopes
 from . import spool
 from .geometry import Geometry
 from .state import LoadState
@@ -124,10 +124,10 @@ def of_valve(v: Values) -> spool.Read:
     return read
 
 
-def lapped_spool(v: Values, design: Design, state: LoadState) -> LappedSpool | None:
-    """The lapped spool of the design's valve in every load case; None with the course's law."""
+def metering_spool(v: Values, design: Design, state: LoadState) -> MeteringSpool | None:
+    """The spool of the design's valve in every load case; None for the course's equal edges."""
     assert design.valve is not None
-    return spool.lapped_spool(
+    return spool.metering_spool(
         of_valve(v),
         design.valve,
         density=state.density,
@@ -158,10 +158,10 @@ def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) ->
 
 def _slopes(v: Values, design: Design, state: LoadState, leakage: Array) -> BothSlopes:
     """Small-signal flows of the valve that drives and holds the load."""
-    lapped = lapped_spool(v, design, state)
-    if lapped is not None:
-        return lapped_slopes(
-            spool=lapped,
+    metering = metering_spool(v, design, state)
+    if metering is not None:
+        return held_slopes(
+            spool=metering,
             supply_pressure=v["supply.pressure"],
             return_pressure=v["supply.return_pressure"],
             pressure_a=state.holding_a,

@@ -372,11 +372,13 @@ def statics(
     drive_films, return_films = (
         sealing.films_of(tables, rings, stroke, len(v.cases)) for stroke in STROKES
     )
-    friction = sealing.compute(v, design, stock, g, case_state, barrel, rings, drive_films, out)
+    sections = rods.derive(v, design, stock, g)
+    friction = sealing.compute(
+        v, design, stock, g, case_state, barrel, rings, drive_films, sections, out
+    )
     sealing.compute_film(g, case_state, drive_films, return_films, out)
     net = _forces(g, case_state, friction, out)
     joint.compute(design, case_state.joint, case_state.positions, net, out)
-    sections = rods.derive(v, design, stock, g)
     rod = sections[0]
     parts = weight.parts(v, design, stock, g, sections)
     out.put("mass", sum(parts.values()))
@@ -495,6 +497,14 @@ def duty_numbers(subject: PreparedDesign, v: Values) -> tuple[CycleModels, Array
     with np.errstate(all="ignore"):
         plan, numbers = _duty_numbers(subject, v, statics(subject, v, MetricArrays()))
     return _cycle_models(subject, plan, numbers), stacked_numbers(numbers)
+
+
+def duty_results(subject: PreparedDesign, v: Values) -> MetricArrays:
+    """Metrics of the duty cycles only, for all designs in `v`; other models run without search."""
+    out = MetricArrays()
+    with np.errstate(all="ignore"):
+        _duty(subject, v, statics(subject, v, out), out)
+    return out
 
 
 def _duty_numbers(subject: PreparedDesign, v: Values, s: Statics) -> tuple[Plan, Numbers]:

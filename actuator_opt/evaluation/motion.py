@@ -14,10 +14,12 @@ import numpy as np
 from ..base.dataclass import dataclass
 from ..base.numeric import Array, angle, magnitude, maximum, real, where
 from ..design.model import Design
-from ..design.valve import Spool
+from ..design.valve import Spool, Valve
 from ..models import dynamics, line_ends, linear, loop
 from ..models.line_ends import LineEnd
 from ..models.linear import LinearActuator, Side
+from ..models.metering_curve import MeteringCurve
+from ..models.play import band_of_position
 from .circuit import (
     CHAMBERS,
     Chamber,
@@ -31,7 +33,7 @@ from .circuit import (
     throttle_conductances,
 )
 from .limits import MetricArrays
-from .spool import EDGES, spool_motion
+from .spool import EDGES, spool_bands, spool_motion
 from .springs import Springs, weakest_per_chamber
 from .state import LoadState
 from .values import Values
@@ -307,6 +309,9 @@ def warnings(
             )
         if valve is not None and valve.spool is not None and valve.spool.type == "lapped":
             yield from _laps(v, valve.spool)
+        if valve is not None:
+            yield from _curves(valve)
+            yield from _hysteresis(v, out)
     yield from _ports(v, design, motion, state)
     yield from _lines(design, motion, out)
 
@@ -315,11 +320,7 @@ def _laps(v: Values, spool: Spool) -> Iterable[tuple[str, str]]:
     """Warn of edges that differ, and of overlaps, within which the position is not controlled."""
     edges = [getattr(spool, key) for key in EDGES.values()]
     if any(edge != edges[0] for edge in edges):
-        yield (
-            "ultimate_gain",
-            "the valve's four edges differ, but the holding pressures are computed for equal "
-            "edges; only a simulation takes the difference into account",
-        )
+        yield "ultimate_gain", UNEQUAL
     overlaps = [
         float(np.max(np.real(v.get(f"valve.spool.{key}.overlap", v["valve.spool.overlap"]))))
         for key in EDGES.values()
@@ -328,11 +329,59 @@ def _laps(v: Values, spool: Spool) -> Iterable[tuple[str, str]]:
     if max(overlaps) > 0:
         lost = max(overlaps) / float(np.min(np.real(v["valve.spool.stroke"])))
     if lost > 0:
-        yield (
-            "bandwidth",
-            f"the valve's dead band is {lost:.2g} of its full signal; within it the valve hardly "
-            "moves the load. Gains and margins apply beyond it, where the edges begin to open",
-        )
+        yield "bandwidth", _dead_band_text(lost)
+
+
+DEAD_BAND = 0.02
+"""Share of the full signal within which the edges of a flow curve stay closed, from which a dead
+band is reported (our choice)."""
+UNEQUAL = (
+    "the valve's four edges differ, but the holding pressures are computed for equal edges; only a "
+    "simulation takes the difference into account"
+)
+"""Warning about a valve with unequal edges."""
+
+
+def _dead_band_text(lost: float) -> str:
+    """Warning about a dead band, a share of the full signal."""
+    return (
+        f"the valve's dead band is {lost:.2g} of its full signal; within it the valve hardly "
+        "moves the load. Gains and margins apply beyond it, where the edges begin to open"
+    )
+
+
+def _curves(valve: Valve) -> Iterable[tuple[str, str]]:
+    """Warn of edges that differ, and of a dead band, of a valve with curves or coefficients."""
+    coefficients, table = valve.edge_coefficients, valve.flow_curve
+    different = coefficients is not None and len(set(dict(coefficients).values())) > 1
+    if table is not None:
+        edges = [table.points(key, valve.signal) for key in EDGES.values()]
+        different = any(points != edges[0] for points in edges)
+        lost = min(MeteringCurve.through(*points).start for points in edges)
+        if lost > DEAD_BAND:
+            yield "bandwidth", _dead_band_text(lost)
+    if different:
+        yield "ultimate_gain", UNEQUAL
+
+
+def _hysteresis(v: Values, out: MetricArrays) -> Iterable[tuple[str, str]]:
+    """Say that the margins leave out hysteresis and threshold, and give their position error."""
+    bands = spool_bands(of_valve(v))
+    if bands is None or np.all(np.real(bands[1]) == 0):
+        return
+    gain = float(np.min(np.real(out.metrics["position_gain"][""])))
+    threshold, hysteresis = (
+        1e3 * float(np.max(np.real(band_of_position(signal_band=band, gain=gain))))
+        for band in bands
+    )
+    yield (
+        "position_gain",
+        "gain margin, phase margin and bandwidth leave out the valve's hysteresis and threshold; a "
+        f"proportional position loop with a gain of {gain:.4g} V/m stops up to "
+        f"{hysteresis / 2:.3g} mm from its reference, and does not respond to reversals by less "
+        f"than {threshold:.3g} mm. A simulation includes both, and shows whether the loop "
+        "oscillates",
+    )
 
 
 def _weakest_gain(motion: Motion) -> Array:

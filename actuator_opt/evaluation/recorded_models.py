@@ -51,25 +51,8 @@ def recorded_models(
     """
     neutral = _Neutral(subject)
     bounds = {row.limit_of.path for row in limits}
-    numbers = sorted(
-        (
-            path
-            for path in read
-            if path not in paths
-            and (subject.numbers.get(path) or (path in bounds and path in subject.numbers))
-        ),
-        key=neutral.path,
-    )
-    factors = sorted(
-        (key for key, value in subject.factors.items() if value),
-        key=lambda key: (neutral.number[key[0]], *key[1:]),
-    )
-    tables = {
-        (name, key): [entry.value, *chain.from_iterable(entry.points)]
-        for name, material in subject.materials.items()
-        for key, entry in material.properties.items()
-        if entry.points and f"materials.{name}.{key}" in read
-    }
+    numbers, factors = _inputs(subject, paths, read, bounds, neutral)
+    tables = _tables(subject, read)
     count, first = len(paths), len(numbers)
     second = first + len(factors)
 
@@ -96,17 +79,16 @@ def recorded_models(
         return namespace(numbers).broadcast_to(numbers, (len(numbers), inputs.shape[1]))
 
     names = [*paths, *numbers, *map(str, factors)]
+    names += [f"{place} {k}" for place, values in tables.items() for k in range(len(values))]
     known = [subject.numbers[path] for path in (*paths, *numbers)]
     known += [subject.factors[key] for key in factors]
-    for place, values in tables.items():
-        names += [f"{place} {k}" for k in range(len(values))]
-        known += values
-    present = np.array(known)
-    places = [
-        (x.limit_of.name, x.limit_of.metric, x.limit_of.sense, neutral.text(x.place), x.case_index)
-        for x in limits
+    present = np.array([*known, *chain.from_iterable(tables.values())])
+    structure = [
+        *_structure(subject, read, neutral),
+        list(map(neutral.path, paths)),
+        [neutral.limit(row) for row in limits],
+        goals,
     ]
-    structure = [*_structure(subject, read, neutral), list(map(neutral.path, paths)), places, goals]
     if subject.design.duty is None:
         return RecordedFunction(rows, names, present, structure)
     models = kernel.duty_numbers(subject, subject.values())[0]
@@ -181,6 +163,37 @@ class RecordedWithDuty(RecordedFunction):
         width = width_of(known) if np.iscomplexobj(known) else 1
         results = self._models(self._numbers(known), width)
         return np.concatenate([variables, results, others])
+
+
+def _inputs(
+    subject: PreparedDesign,
+    paths: Sequence[str],
+    read: Collection[str],
+    bounds: Collection[str | None],
+    neutral: _Neutral,
+) -> tuple[list[str], list[tuple[str, str, bool]]]:
+    """Numbers and knock-down factors that are inputs besides the variables, in order."""
+    numbers = (
+        path
+        for path in read
+        if path not in paths
+        and (subject.numbers.get(path) or (path in bounds and path in subject.numbers))
+    )
+    factors = (key for key, value in subject.factors.items() if value)
+    return (
+        sorted(numbers, key=neutral.path),
+        sorted(factors, key=lambda key: (neutral.number[key[0]], *key[1:])),
+    )
+
+
+def _tables(subject: PreparedDesign, read: Collection[str]) -> dict[tuple[str, str], list[float]]:
+    """Numbers of all tables of properties that the models read, by material and property."""
+    return {
+        (name, key): [entry.value, *chain.from_iterable(entry.points)]
+        for name, material in subject.materials.items()
+        for key, entry in material.properties.items()
+        if entry.points and f"materials.{name}.{key}" in read
+    }
 
 
 def _with_tables(
@@ -269,6 +282,11 @@ class _Neutral:
         block, _, rest = path.partition(".")
         name, _, key = rest.rpartition(".")
         return f"materials.{self.number[name]}.{key}" if block == "materials" else path
+
+    def limit(self, row: LimitRow) -> tuple[str, str, str, str, int | None]:
+        """Name, metric, sense, location and load case of a limit."""
+        limit = row.limit_of
+        return limit.name, limit.metric, limit.sense, self.text(row.place), row.case_index
 
     def text(self, text: str) -> str:
         """A text that may contain names or labels."""

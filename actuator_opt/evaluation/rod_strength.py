@@ -21,6 +21,7 @@ from ..models.strength_modes import Stress, load_multiplier
 from . import plies, weight
 from .barrel import Cycle, Wall
 from .geometry import Geometry
+from .guides import side_reactions
 from .limits import MaterialValues, MetricArrays
 from .rods import FORCE, OUTSIDE, WARMTH, RodSection, material_of
 from .state import LoadState, overhang
@@ -120,7 +121,8 @@ def derive(
     """Critical load and bending moment of every rod in every load case.
 
     The actuator is taken as horizontal. The side load acts on the rod through the head. The tip of
-    a second rod may be free, so its weight bends it as a cantilever from the cap, w L^2/2.
+    a second rod may be free, so its weight bends it as a cantilever from the cap, w L^2/2; the
+    force of its gland bends it at the piston. The larger moment counts.
     """
     beams = []
     for through, section in zip(g.rods, sections, strict=True):
@@ -130,6 +132,7 @@ def derive(
             moment = moment + state.side_load * overhang(g, state)
         else:
             moment = GRAVITY * section.mass_per_length * segments[1] * segments[1] / 2
+            moment = maximum(moment, side_reactions(g, state, sections).second_moment)
         critical = critical_load(seat(design, through.end), wall, section, segments)
         beams.append(Beam(critical=critical, moment=moment))
     return tuple(beams)

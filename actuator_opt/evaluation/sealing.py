@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -21,6 +21,7 @@ from .barrel import OWN, SEAL_STEP, Wall
 from .film import Stroke, of_place
 from .film_tables import FilmTable, Key, Running, running as films_running
 from .geometry import Geometry, Groove
+from .guides import side_reactions
 from .limits import MaterialValues, MetricArrays
 from .rings import (
     BLOCKS,
@@ -32,7 +33,8 @@ from .rings import (
     seal_contact,
     static_rings,
 )
-from .state import LoadState, side_reactions
+from .rods import RodSection
+from .state import LoadState
 from .values import Values
 
 if TYPE_CHECKING:
@@ -48,6 +50,7 @@ def compute(
     wall: Wall,
     rings: tuple[Ring, ...],
     films: Films,
+    sections: Sequence[RodSection],
     out: MetricArrays,
 ) -> Friction:
     """Compute gland, contact and friction metrics of all seals; return the total friction."""
@@ -85,7 +88,7 @@ def compute(
         gland_rows = gland_metrics(v, design, stock, geometry, state, ring, wall.growths)
         for metric, by_place in gland_rows.items():
             by_metric.setdefault(metric, {}).update(by_place)
-    other_friction = wipers_and_guides(v, design, geometry, state)
+    other_friction = wipers_and_guides(v, design, geometry, state, sections)
     total = total + other_friction
     out.friction_parts["wipers and guides"] = other_friction.running
     for metric, by_place in by_metric.items():
@@ -184,10 +187,12 @@ def _at_interseal_pressure(ring: Ring, films: Films) -> Ring:
     return ring.at(pressure=absolute(pressure))
 
 
-def wipers_and_guides(v: Values, design: Design, geometry: Geometry, state: LoadState) -> Friction:
+def wipers_and_guides(
+    v: Values, design: Design, geometry: Geometry, state: LoadState, sections: Sequence[RodSection]
+) -> Friction:
     """Coulomb friction of the wipers, and of the guide rings under the side load."""
     total: Array = sum((wiper.friction for wiper in wipers(v, design, geometry, state)), 0.0)
-    reactions = side_reactions(geometry, state)
+    reactions = side_reactions(geometry, state, sections).by_place
     for name, grooves, _ in places(geometry):
         for groove in grooves:
             if groove.role == "guide":

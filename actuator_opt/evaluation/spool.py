@@ -1,4 +1,4 @@
-"""The spool of a valve as its block states it: edges, and motion."""
+"""The spool of a valve as its block states it: edges, motion, hysteresis."""
 
 from __future__ import annotations
 
@@ -7,13 +7,17 @@ from typing import NamedTuple
 
 from ..base.numeric import Array
 from ..design.valve import Valve
-from ..models import lapped_edge, valve as models
+from ..models import lapped_edge, lapped_leakage, play, valve as models
 from ..models.lapped_spool import LappedSpool, SpoolEdge
+from ..models.metering_curve import CurveEdge, CurveSpool, MeteringCurve
+from ..models.metering_spool import MeteringSpool
 
 Read = Callable[[str], Array]
 """Reads a stated number of the block by its key, such as ``spool.overlap``; None if not stated."""
 EDGES = {"supply_a": "pa", "supply_b": "pb", "a_tank": "at", "b_tank": "bt"}
-"""Key of each edge of `lapped_spool.LappedSpool`."""
+"""Key of each edge of a `metering_spool.MeteringSpool`."""
+LINEAR = MeteringCurve.through((0.0, 1.0), (0.0, 1.0))
+"""An edge that opens in proportion to the signal."""
 ANY_STROKE = 1e-3
 """Stroke of a spool that states neither lap nor clearance [m]: it cancels out."""
 
@@ -38,6 +42,28 @@ def spool_motion(read: Read) -> SpoolMotion:
     return SpoolMotion(fall / models.spool_bandwidth(damping_ratio=damping), damping)
 
 
+def spool_bands(read: Read) -> tuple[Array, Array] | None:
+    """Threshold and hysteresis of a valve [V]; None if it states neither.
+
+    The threshold is part of the hysteresis: if only one of them is stated, the other equals it.
+    """
+    hysteresis, threshold = read("hysteresis"), read("threshold")
+    if hysteresis is None and threshold is None:
+        return None
+    threshold = hysteresis if threshold is None else threshold
+    hysteresis = threshold if hysteresis is None else hysteresis
+    return threshold * read("signal"), hysteresis * read("signal")
+
+
+def spool_plays(read: Read) -> tuple[Array, ...]:
+    """Half widths of the plays before the spool [V]; empty for a valve without hysteresis."""
+    bands = spool_bands(read)
+    if bands is None or bands[1] == 0:
+        return ()
+    widths = play.play_half_widths(threshold=bands[0], hysteresis=bands[1])
+    return widths[:1] if widths[0] == widths[1] else widths
+
+
 class CourseEdges(NamedTuple):
     """Flow coefficients of the edges by the course's law [m^3/s/sqrt(Pa)]."""
 
@@ -49,19 +75,28 @@ class CourseEdges(NamedTuple):
     """Coefficient of the return edges A-T and B-T with the spool centred."""
 
 
+def _in_oil(read: Read, coefficient: Array, viscosity: Array) -> Array:
+    """Coefficient of an open edge in an oil; the same in any oil without a rated viscosity."""
+    rated_viscosity = read("rated_viscosity")
+    if rated_viscosity is None:
+        return coefficient
+    return models.viscosity_corrected(
+        coefficient=coefficient, rated_viscosity=rated_viscosity, viscosity=viscosity
+    )
+
+
 def course_edges(read: Read, *, viscosity: Array) -> CourseEdges:
     """Flow coefficients of a valve by the course's law, in an oil of a kinematic viscosity."""
     rated = models.edge_coefficient(flow=read("rated_flow"), pressure_drop=read("rated_drop"))
-    rated_viscosity = read("rated_viscosity")
-    if rated_viscosity is not None:
-        rated = models.viscosity_corrected(
-            coefficient=rated, rated_viscosity=rated_viscosity, viscosity=viscosity
-        )
+    return CourseEdges(_in_oil(read, rated, viscosity), *_leakages(read))
+
+
+def _leakages(read: Read) -> tuple[Array, Array]:
+    """Leakage coefficients of the supply edges and of the tank edges by the course's law."""
     leakage, drop, tank_drop = (
         read(name) for name in ("leakage_flow", "leakage_drop", "tank_leakage_drop")
     )
-    return CourseEdges(
-        rated,
+    return (
         models.edge_coefficient(flow=leakage, pressure_drop=drop),
         models.edge_coefficient(
             flow=leakage, pressure_drop=drop if tank_drop is None else tank_drop
@@ -69,15 +104,34 @@ def course_edges(read: Read, *, viscosity: Array) -> CourseEdges:
     )
 
 
-def lapped_spool(
+def metering_spool(
     read: Read, stated: Valve, *, density: Array, kinematic_viscosity: Array
-) -> LappedSpool | None:
-    """The lapped spool of a valve in an oil; None for a valve with the course's law.
+) -> MeteringSpool | None:
+    """The spool of a valve in an oil, lapped or with curves; None for the course's equal edges."""
+    if stated.spool is not None and stated.spool.type == "lapped":
+        return _lapped(read, stated, density, kinematic_viscosity)
+    edges: dict[str, CurveEdge] = {}
+    if stated.flow_curve is not None:
+        root = models.edge_coefficient(flow=1.0, pressure_drop=read("rated_drop"))
+        factor = _in_oil(read, root, kinematic_viscosity)
+        for name, key in EDGES.items():
+            points = stated.flow_curve.points(key, stated.signal)
+            edges[name] = CurveEdge(MeteringCurve.through(*points), factor)
+    elif stated.edge_coefficients is not None:
+        supply, tank = _leakages(read)
+        for name, key in EDGES.items():
+            rated = _in_oil(read, read(f"edge_coefficients.{key}"), kinematic_viscosity)
+            leakage = supply if name.startswith("supply") else tank
+            edges[name] = CurveEdge(LINEAR, rated - leakage, leakage)
+    return CurveSpool(**edges, full_signal=read("signal")) if edges else None
+
+
+def _lapped(read: Read, stated: Valve, density: Array, kinematic_viscosity: Array) -> LappedSpool:
+    """The lapped spool of a valve in an oil.
 
     Every edge passes the rated flow at full signal if the valve states it.
     """
-    if stated.spool is None or stated.spool.type != "lapped":
-        return None
+    assert stated.spool is not None
     stroke = read("spool.stroke")
     oil = {"density": density, "flow_coefficient": read("spool.flow_coefficient")}
     spool = {
@@ -86,8 +140,11 @@ def lapped_spool(
         "dynamic_viscosity": density * kinematic_viscosity,
         **oil,
     }
+    clearance = read("spool.clearance")
+    if stated.leakage_flow > 0:
+        clearance = _leaking_clearance(read, spool["stroke"], oil)
     edges = {
-        name: _edge(read, key, spool["stroke"], oil, kinematic_viscosity)
+        name: _edge(read, key, spool["stroke"], oil, kinematic_viscosity, clearance)
         for name, key in EDGES.items()
     }
     points = tuple(
@@ -97,17 +154,41 @@ def lapped_spool(
     return LappedSpool(**edges, **spool, curve=points)
 
 
+def _leaking_clearance(read: Read, stroke: Array, oil: dict[str, Array]) -> Array:
+    """Clearance with which every edge leaks as the data sheet says, in its oil."""
+    return lapped_leakage.clearance_of_leakage(
+        leakage=read("leakage_flow"),
+        leakage_drop=read("leakage_drop"),
+        overlap=read("spool.overlap"),
+        stroke=stroke,
+        dynamic_viscosity=oil["density"] * read("rated_viscosity"),
+        rated_flow=read("rated_flow"),
+        rated_drop=read("rated_drop"),
+        rounding=read("spool.rounding"),
+        **oil,
+    )
+
+
 def _edge(
-    read: Read, key: str, stroke: Array, oil: dict[str, Array], viscosity: Array
+    read: Read,
+    key: str,
+    stroke: Array,
+    oil: dict[str, Array],
+    viscosity: Array,
+    clearance: Array | None,
 ) -> SpoolEdge:
-    """One edge of the spool."""
+    """One edge of the spool; `clearance` is that of the edges that state none."""
 
     def own(name: str) -> Array:
         value = read(f"spool.{key}.{name}")
         return read(f"spool.{name}") if value is None else value
 
     share = read(f"spool.{key}.flow_share")
-    gap = {"clearance": own("clearance"), "rounding": own("rounding")}
+    stated = read(f"spool.{key}.clearance")
+    gap = {
+        "clearance": clearance if stated is None else stated,
+        "rounding": own("rounding"),
+    }
     overlap, width = own("overlap"), read("spool.area_gradient")
     if width is None:
         width = _width(read, stroke - overlap, oil, viscosity, gap)

@@ -21,7 +21,7 @@ from ..design.kinds import Fraction
 from ..design.material import Material, bulk_modulus_law, viscosity_law
 from ..design.model import Design, FluidSection
 from ..metrics.table import OIL_FED
-from ..models import fluid, oil_laws, retention, stiffness
+from ..models import fluid, oil_laws, stiffness
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from . import linkage as joint_module
 from .geometry import Geometry
@@ -234,18 +234,6 @@ def overhang(g: Geometry, state: LoadState) -> Array:
     return (
         state.reach + g.rod_extension + g.rod_stack + g.eye_offset + (g.head_length + g.plate) / 2
     )
-
-
-def side_reactions(g: Geometry, state: LoadState) -> dict[str, Array]:
-    """Side forces on the guides of rod and piston.
-
-    Piston and head carry the side load. The gland of a second rod would relieve them; that is left
-    out, so their forces are too large rather than too small.
-    """
-    head, piston = retention.guide_forces(
-        side_force=state.side_load, overhang=overhang(g, state), span=g.bearing_span
-    )
-    return {"rod": head, "piston": piston, "second_rod": 0.0 * head}
 
 
 def _positions(

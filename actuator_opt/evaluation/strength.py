@@ -35,10 +35,11 @@ from .geometry import (
     groove_totals,
     joints_of,
 )
+from .guides import side_reactions
 from .limits import MaterialValues, MetricArrays
 from .rod_strength import Beam
 from .rods import RodSection
-from .state import LoadState, side_reactions
+from .state import LoadState
 from .values import Values
 
 HOLE = 2.0
@@ -170,7 +171,7 @@ def compute(
     rods.thermal(v, design, thermal, out)
     _caps(stock, design, g, supply, out)
     _pins(stock, design, g, maximum(push, pull) if design.double_rod else push, out)
-    _guides(stock, design, g, state, out)
+    _guides(stock, design, g, side_reactions(g, state, sections).by_place, out)
 
 
 def _pressure_factors(
@@ -409,16 +410,19 @@ def _guided(grooves: Sequence[Groove], length: Array) -> Array:
 
 
 def _guides(
-    stock: MaterialValues, design: Design, g: Geometry, state: LoadState, out: MetricArrays
-) -> None:
+    stock: MaterialValues, design: Design, g: Geometry, carried: Mapping[str, Array],
+    out: MetricArrays,
+) -> None:  # fmt: skip
+    """Guide pressures of the glands and of the piston under the forces `carried`, by place."""
     out.put("bearing_overlap", g.bearing_span / g.rod_diameter)
-    carried = side_reactions(g, state)
     pressures = {
-        "head": retention.bearing_pressure(
-            force=carried["rod"],
-            diameter=g.rod_diameter,
-            length=_guided(g.rod_grooves, g.head_length + g.plate),
-        ),
+        through.gland: retention.bearing_pressure(
+            force=carried[through.path],
+            diameter=through.diameter,
+            length=_guided(through.grooves, g.head_length + g.plate),
+        )
+        for through in g.rods
+    } | {
         "piston": retention.bearing_pressure(
             force=carried["piston"],
             diameter=g.bore,
@@ -427,10 +431,9 @@ def _guides(
     }
     out.put("bearing_pressure", pressures)
     factors = {}
-    for place, part, seal in (
-        ("head", design.head, design.seals.rod),
-        ("piston", design.piston, design.seals.piston),
-    ):
+    for place in pressures:
+        ends = (design.head, design.seals.rod)
+        part, seal = (design.piston, design.seals.piston) if place == "piston" else ends
         bearing = part.bearing or part.material
         material = bearing if seal.guide is None else seal.guide.material
         allowed = stock.allowable(material, "bearing_strength")

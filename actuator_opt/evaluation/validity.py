@@ -22,8 +22,18 @@ from ..metrics.table import OWN, ROWS, WALL_FED
 from ..models import contact_profile, gland, laminate, rough_surface, seals
 from ..models.strength import CRITERIA
 from ..models.winding_path import SLIPPAGE
-from . import geometry as geometry_module, linkage as joint, motion, proportions, springs, state
+from . import (
+    circuit,
+    geometry as geometry_module,
+    linkage as joint,
+    motion,
+    proportions,
+    springs,
+    state,
+)
 from .barrel import LAMINATES, kind
+from .duty_cycles import validity as duty_validity
+from .duty_cycles.study import DutyStudy
 from .film_tables import FilmTable
 from .geometry import Geometry
 from .kernel import ModelRun, PreparedDesign
@@ -31,6 +41,7 @@ from .ports import places
 from .result import Metric, ModelUse, Unverified
 from .rings import Ring, extrusion_end, seal_contact, static_rings
 from .rod_strength import NEAR
+from .spool import spool_motion
 from .values import Values
 
 
@@ -243,7 +254,9 @@ def kind_of(subject: PreparedDesign) -> str:
     return kind(subject.design, subject.materials)
 
 
-def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tuple[str, str]]:
+def warnings(
+    subject: PreparedDesign, v: Values, run: ModelRun, duty: DutyStudy | None = None
+) -> Iterable[tuple[str, str]]:
     """Yield (metric, sentence) for each model or value that is used outside its valid range."""
     g = run.geometry
     thin = float(np.max(run.wall.thin_ratio))
@@ -263,7 +276,6 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
     yield from _rod_warnings(subject, run)
     yield from _winding_warnings(subject.design, run)
     yield from _head_warnings(subject.design)
-    yield from _double_rod_warnings(subject.design)
     yield from (("", text) for text in assembly.warnings(subject.design))
     yield from _skirt_oil_warnings(subject.design, run)
     yield from _port_warnings(subject, g)
@@ -281,6 +293,9 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
     yield from springs.warnings(run.springs)
     yield from joint.warnings(subject.design, run.state.joint)
     yield from motion.warnings(v, subject.design, run.motion, run.state, run.computed)
+    if duty is not None:
+        valve = subject.design.valve is not None
+        yield from duty_validity.warnings(duty, _frequencies(subject, v, run), valve=valve)
     if run.wall.missing:
         yield "burst_factor", f"barrel: {run.wall.missing[0]}"
     yield from _measured(subject, v)
@@ -295,6 +310,23 @@ def warnings(subject: PreparedDesign, v: Values, run: ModelRun) -> Iterable[tupl
                 f"grows by the clearance of {1e6 * float(np.max(g.piston_clearance)):.0f} um"
             ),
         )
+
+
+def _frequencies(subject: PreparedDesign, v: Values, run: ModelRun) -> dict[str, float]:
+    """Lowest frequencies of the actuator by their words [Hz]; unknown ones are left out."""
+    frequencies = {}
+    for name, words in (
+        ("natural_frequency", "natural frequency"),
+        ("bandwidth", "bandwidth of the position loop"),
+    ):
+        values = [np.real(x) for x in run.computed.metrics.get(name, {}).values()]
+        known = [x[np.isfinite(x)] for x in map(np.asarray, values)]
+        if any(x.size for x in known):
+            frequencies[words] = float(min(np.min(x) for x in known if x.size))
+    if subject.design.valve is not None:
+        motion = spool_motion(circuit.of_valve(v))
+        frequencies["natural frequency of the spool"] = float(motion.natural_frequency)
+    return frequencies
 
 
 def _measured(subject: PreparedDesign, v: Values) -> Iterable[tuple[str, str]]:
@@ -366,16 +398,6 @@ def _head_warnings(design: Design) -> Iterable[tuple[str, str]]:
             "",
             f"the rod has no bushing and runs on {design.head.material}: add seals.rod.guide or "
             "head.bearing",
-        )
-
-
-def _double_rod_warnings(design: Design) -> Iterable[tuple[str, str]]:
-    """State what the models leave out beside a second rod."""
-    if design.double_rod and any(case.side_load > 0 for case in design.load_cases):
-        yield (
-            "bearing_pressure",
-            "the second gland, which relieves head and piston under a side load, is left out: "
-            "their pressures and friction are upper estimates",
         )
 
 

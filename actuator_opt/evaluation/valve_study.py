@@ -15,7 +15,9 @@ import numpy as np
 from ..base.dataclass import dataclass
 from ..base.numeric import Array
 from ..design.model import Design
-from ..models.lapped_spool import LappedSpool, lapped_flows
+from ..design.valve import Valve
+from ..models.lapped_spool import LappedSpool
+from ..models.metering_spool import MeteringSpool, spool_flows
 from ..models.valve import ValveFlows, valve_flows
 from . import circuit, spool
 from .state import LoadState
@@ -73,15 +75,31 @@ class ValveStudy:
     """Signals from the centre [V]."""
     curves: tuple[ValveCurve, ...]
     """Curve of the design's valve, then those of the textbook's centres."""
+    threshold: float | None = None
+    hysteresis: float | None = None
+    """Threshold and hysteresis [V]; None if the valve states neither."""
+    position_gain: float | None = None
+    """Gain of the position loop [V/m], for the position error that they cause."""
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data for JSON."""
-        return {name: plain(getattr(self, name)) for name in self.__dataclass_fields__}
+        """Plain data for JSON; threshold and hysteresis only if the valve states them."""
+        names = list(self.__dataclass_fields__)
+        if self.hysteresis is None:
+            names = names[: names.index("threshold")]
+        return {name: plain(getattr(self, name)) for name in names}
 
 
-def study(design: Design, v: Values, state: LoadState) -> ValveStudy | None:
-    """Curves of the design's valve; None if it has none, or does not state its spool."""
-    if design.valve is None or design.valve.spool is None:
+def _is_stated(valve: Valve | None) -> bool:
+    """Whether a valve states more than the rated flow and leakage of the course's law."""
+    names = ("spool", "flow_curve", "edge_coefficients", "hysteresis", "threshold")
+    return any(getattr(valve, name, None) is not None for name in names)
+
+
+def study(
+    design: Design, v: Values, state: LoadState, position_gain: float | None
+) -> ValveStudy | None:
+    """Curves of the design's valve; None if it has none, or states only flow and leakage."""
+    if design.valve is None or not _is_stated(design.valve):
         return None
     oil = {
         "density": of_case(state.density, 0),
@@ -90,23 +108,35 @@ def study(design: Design, v: Values, state: LoadState) -> ValveStudy | None:
     read = circuit.of_valve(v)
     supply, tank = float(v["supply.pressure"]), float(v["supply.return_pressure"])
     lines = {"supply_pressure": supply, "return_pressure": tank}
-    lapped = spool.lapped_spool(read, design.valve, **oil)
+    metering = spool.metering_spool(read, design.valve, **oil)
     full = float(read("signal"))
-    if lapped is None:
+    if metering is None:
         edges = spool.course_edges(read, viscosity=oil["kinematic_viscosity"])
         most = full * min(1.0, max(SHOWN * LEAST, SHOWN * float(edges.supply / edges.rated)))
         names: dict[str, float | None] = {"this valve": None}
         flows = _course(edges, full, lines)
-    else:
-        lap = _lap(lapped)
-        most = full * min(1.0, SHOWN * lapped.signal_share(lap))
-        names = {"this valve": _common(lapped)}
-        if not lapped.curve:  # a curve has its own dead band
+    elif isinstance(metering, LappedSpool):
+        lap = _lap(metering)
+        most = full * min(1.0, SHOWN * metering.signal_share(lap))
+        names = {"this valve": _common(metering)}
+        if not metering.curve:  # a curve has its own dead band
             names |= {"open": -lap, "critical": 0.0, "closed": lap}
-        flows = _lapped(_beside(lapped, list(names.values())[1:]), lines)
+        flows = _metered(_beside(metering, list(names.values())[1:]), lines)
+    else:  # a curve is shown whole
+        leaks = max(
+            float(e.coefficient(0.0) / e.coefficient(1.0)) for e in _edges(metering).values()
+        )
+        whole = design.valve.flow_curve is not None
+        most = full * (1.0 if whole else min(1.0, SHOWN * max(LEAST, leaks)))
+        names = {"this valve": None}
+        flows = _metered(metering, lines)
     signal = np.linspace(-most, most, POINTS)
     curves = _curves(names, flows, signal, full, supply, tank)
-    return ValveStudy(v.cases[0], supply, tank, signal, curves)
+    bands = spool.spool_bands(read) or (None, None)
+    threshold, hysteresis = (None if band is None else float(band) for band in bands)
+    return ValveStudy(
+        v.cases[0], supply, tank, signal, curves, threshold, hysteresis, position_gain
+    )
 
 
 def _course(edges: spool.CourseEdges, full: float, lines: dict[str, float]) -> Flows:
@@ -127,18 +157,18 @@ def _course(edges: spool.CourseEdges, full: float, lines: dict[str, float]) -> F
     return flows
 
 
-def _lapped(one: LappedSpool, lines: dict[str, float]) -> Flows:
-    """Flows of a lapped spool."""
+def _metered(one: MeteringSpool, lines: dict[str, float]) -> Flows:
+    """Flows of a spool with laps or curves."""
 
     def flows(signal: Array, pressure: Array) -> ValveFlows:
-        return lapped_flows(
+        return spool_flows(
             spool=one, signal=signal, pressure_a=pressure, pressure_b=pressure, **lines
         )
 
     return flows
 
 
-def _edges(one: LappedSpool) -> dict[str, Any]:
+def _edges(one: MeteringSpool) -> dict[str, Any]:
     """The four edges of a spool, by name."""
     return {name: getattr(one, name) for name in spool.EDGES}
 

@@ -66,7 +66,8 @@ def require_formats(formats: Sequence[str], *, scenario: bool = False) -> tuple[
             raise UsageError(Diagnostic(message, f"use --format {' or '.join(SCENARIO_FORMATS)}"))
         if name == "fmu" and not scenario:
             message = "an FMU file contains a circuit over time: it needs a scenario"
-            raise UsageError(Diagnostic(message, "add --scenario FILE"))
+            remedy = "add --scenario FILE, or give a scenario that names its design"
+            raise UsageError(Diagnostic(message, remedy))
         if name in _NEEDS:
             library(_NEEDS[name])
     return tuple(dict.fromkeys(formats))

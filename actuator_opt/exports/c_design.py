@@ -104,6 +104,9 @@ def _recorded(subject: PreparedDesign) -> _Recorded:
     if subject.plugins:
         remedy = "leave out --plugin, and the requirements on metrics of the plug-in"
         raise InputError(Diagnostic("custom metrics cannot be written as C", remedy))
+    if subject.design.duty is not None:
+        message = "duty cycles cannot be written as C: they are computed from their records"
+        raise InputError(Diagnostic(message, "add --unset duty", path="duty"))
     if not subject.design.variables:
         message = "a C file needs variables, by which it computes gradients"
         remedy = "add a `variables` block with lower and upper bounds"

@@ -13,7 +13,7 @@ from ..base import units
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, remedy as remedy_for, shown
 from ..base.numeric import Array
-from ..base.sheet import (
+from ..base.sheets import (
     RecordColumn,
     Sheet,
     converted,

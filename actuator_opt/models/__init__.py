@@ -24,19 +24,10 @@ Some functions are for scripts alone; no part of the program calls them:
   `stiffness_published.barrel_stiffness_as_published`,
   `stiffness_published.line_stiffness_as_published`: equations of [AaltoThesis] that the report
   of its test cylinder names
-- `rainflow.repeating_cycles`, `rainflow.cycle_stress`, `rainflow.change_cycle`,
-  `rainflow.start_stress`, `endurance.reversed_amplitude`, `endurance.basquin_cycles`,
-  `endurance.miner_damage`: fatigue damage of a stress history that repeats
-- `wear.sliding_distance`, `wear.cycle_severity`, `wear.worn_depth`, `wear.wear_share`,
-  `wear.pressure_velocity`, `wear.strokes`: wear of a seal over a cycle
-- `supply_sizing.mean_flow`, `supply_sizing.ripple_volume`, `supply_sizing.total_flow`,
-  `supply_sizing.electric_power`, `supply_sizing.oil_heat`, `supply_sizing.tank_temperature`,
-  `supply_sizing.cooler_conductance_needed`, `supply_sizing.supply_masses`,
-  `supply_sizing.system_mass`, `accumulator.gas_volume_needed`: size of the supply of a cycle
-- `heat_transfer.oil_film_coefficient`, `heat_transfer.throttle_temperature_rise`,
-  `heat_transfer.exchanged_volume`, `heat_transfer.oil_exchange_conductance`,
-  `heat_transfer.tank_temperature`, `heat_transfer.friction_heat`,
-  `thermal_network.thermal_network`, `thermal_network.steady_temperatures`,
-  `thermal_network.temperatures_after`, `thermal_network.slowest_time_constant`,
-  `thermal_network.ripple_bound`: temperatures of an actuator that works in cycles
+- `rainflow.cycle_stress`, `rainflow.change_cycle`, `rainflow.start_stress`: fatigue of a single
+  stress history
+- `wear.strokes`: strokes and reversals of a seal in a cycle
+- `supply_sizing.mean_flow`, `supply_sizing.total_flow`: flow of histories with different samples
+- `thermal_network.temperatures_after`, `thermal_network.slowest_time_constant`,
+  `thermal_network.ripple_bound`: warming of an actuator over time
 """

@@ -499,47 +499,6 @@ def oil_exchange_conductance(
     return density * specific_heat * exchange_flow
 
 
-def tank_temperature(
-    *,
-    ambient_temperature: Array,
-    hydraulic_power: Array,
-    pump_efficiency: Array,
-    net_power: Array,
-    cooler_conductance: Array,
-) -> Array:
-    """Steady temperature of a closed supply's tank, T = T_a + (P_h/eta_p - P_net)/(UA).
-
-    Parameters
-    ----------
-    ambient_temperature : T_a [K]
-    hydraulic_power : P_h, mean hydraulic power of the supply [W]
-    pump_efficiency : eta_p [-], > 0
-    net_power : P_net, mean of work done on the load less work absorbed from it [W]
-    cooler_conductance : UA of cooler and tank [W/K], > 0
-
-    Returns
-    -------
-    temperature [K]; NaN where efficiency or conductance is not positive
-
-    Notes
-    -----
-    Valid: all losses become heat of the oil; the actuator's own heat to air is left out.
-
-    References
-    ----------
-    [derived] energy balance of the supply over a cycle
-
-    Examples
-    --------
-    >>> t = tank_temperature(ambient_temperature=293.15, hydraulic_power=1043.0,
-    ...                      pump_efficiency=0.85, net_power=-8.3, cooler_conductance=30.0)
-    >>> print(f"{t - 273.15:.4f} degC")
-    61.1786 degC
-    """
-    heat = hydraulic_power / positive(pump_efficiency) - net_power
-    return ambient_temperature + heat / positive(cooler_conductance)
-
-
 class FrictionHeat(NamedTuple):
     """Friction heat into the oil, the innermost layer of the wall, the rod and the head [W]."""
 

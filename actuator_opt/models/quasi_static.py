@@ -23,6 +23,7 @@ class DrivenPressures(NamedTuple):
     """Pressure in the other chamber [Pa]."""
 
 
+@geometry
 def edge_ratio(
     *, driven_area: Array, other_area: Array, feed_coefficient: Array, drain_coefficient: Array
 ) -> Array:
@@ -87,8 +88,10 @@ def driven_pressures(
 
     Notes
     -----
-    Valid: incompressible oil, spool without dynamics, critical centre. A negative drop marks a load
-    that stalls the cylinder; a negative chamber pressure marks a load that overruns it.
+    Valid: incompressible oil, no spool dynamics, critical centre of the valve.
+
+    A negative drop marks a load that stalls the cylinder; a negative chamber pressure marks a load
+    that overruns it.
 
     References
     ----------

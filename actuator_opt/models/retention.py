@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import pi
 
-from ..base.numeric import Array, absolute, geometry
+from ..base.numeric import Array, absolute, geometry, maximum, minimum
 from .rod import thread_stress
 
 
@@ -108,6 +108,78 @@ def guide_forces(*, side_force: Array, overhang: Array, span: Array) -> tuple[Ar
     """
     piston = side_force * overhang / span
     return side_force + piston, piston
+
+
+@geometry
+def through_rod_guide_forces(
+    *,
+    side_force: Array,
+    overhang: Array,
+    span: Array,
+    second_span: Array,
+    bending_stiffness: Array,
+    second_bending_stiffness: Array,
+    clearance: Array,
+    piston_clearance: Array,
+    second_clearance: Array,
+) -> tuple[Array, Array, Array]:
+    """Share of a side force on the head bearing, the piston and the bearing of a second rod.
+
+    The rods are a beam over three bearings with play. With M = F e, spans b1 and b2, L = b1 + b2,
+    the beam on the outer bearings sags at the piston by M f_M - P f_P:
+
+    f_M = b1^2 b2 (1/2 - b1/(3 L))/(L EI1) + b1 b2^3/(3 L^2 EI2),
+    f_P = b1^2 b2^2 (b1/EI1 + b2/EI2)/(3 L^2).
+
+    The rod tilts by the play at the head. Up to a sag d = c_P + c_H - (c_H + c_2) b1/L the piston
+    carries nothing, P = 0; then P = (M f_M - d)/f_P until P = M/b1, where the second bearing
+    is free; it takes load on its other side from a sag of d + 2 c_2 b1/L on.
+
+    Parameters
+    ----------
+    side_force : F at the rod eye [N]
+    overhang : e, distance of the rod eye beyond the head bearing [m]
+    span, second_span : b1 from head bearing to piston, b2 from there to the second bearing [m]
+    bending_stiffness, second_bending_stiffness : EI1, EI2 of the rods [N m^2]
+    clearance, piston_clearance, second_clearance : radial play c_H, c_P and c_2 [m]
+
+    Returns
+    -------
+    forces of the head bearing, against F; of the piston, along F; and of the second bearing, along
+    F if positive [N]
+
+    Notes
+    -----
+    Valid: bearings as points, barrel and bearings rigid, piston no stiffer than the rods.
+
+    References
+    ----------
+    [derived] unit-load theorem for a beam with one redundant support; equals the theorem of three
+    moments without play, and `guide_forces` where the second bearing is free
+
+    Examples
+    --------
+    >>> stiff = {"bending_stiffness": 1600.0, "second_bending_stiffness": 1600.0}
+    >>> spans = {"overhang": 0.2, "span": 0.1, "second_span": 0.1}
+    >>> for c in (0.0, 50e-6):
+    ...     play = dict.fromkeys(("clearance", "piston_clearance", "second_clearance"), c)
+    ...     forces = through_rod_guide_forces(side_force=100.0, **spans, **stiff, **play)
+    ...     print(*(f"{force:.1f}" for force in forces))
+    350.0 300.0 -50.0
+    200.0 0.0 100.0
+    """
+    moment, whole = side_force * overhang, span + second_span
+    first, second = 1 / bending_stiffness, 1 / second_bending_stiffness
+    tilted = span * span * second_span * (0.5 - span / (3 * whole)) / whole * first
+    tilted = tilted + span * second_span**3 / (3 * whole * whole) * second
+    pressed = span * second_span / whole
+    pressed = pressed * pressed * (span * first + second_span * second) / 3
+    play = piston_clearance + clearance - (clearance + second_clearance) * span / whole
+    below = (moment * tilted - play) / pressed
+    above = below - 2 * second_clearance * span / whole / pressed
+    piston = maximum(minimum(maximum(below, 0.0), moment / span), above)
+    far = (moment - piston * span) / whole
+    return side_force + piston + far, piston, far
 
 
 @geometry

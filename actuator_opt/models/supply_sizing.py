@@ -12,7 +12,16 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, histories, namespace, over_time, positive, real, sorted_unique
+from ..base.numeric import (
+    Array,
+    geometry,
+    histories,
+    namespace,
+    over_time,
+    positive,
+    real,
+    sorted_unique,
+)
 
 _SAME_PERIOD = 1e-9
 """Largest relative difference of two periods that count as equal."""
@@ -305,6 +314,7 @@ def cooler_conductance_needed(
     return heat / positive(temperature - ambient_temperature)
 
 
+@geometry
 def supply_masses(
     *,
     gas_volume: Array,

@@ -195,6 +195,8 @@ class ActuatorProblem:
     recorded: RecordedFunction | None = None
     """Objective and margins as a function recorded from the models; its inputs are the variables
     and all positive numbers of the design. None with custom metrics, whose code may do anything."""
+    scales: tuple[float, ...] = ()
+    """Divisor of each margin while its limit is 0; empty if all are 1."""
 
     def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
         """The problem with the design's numbers at the PATHs `parameters` as its parameters."""
@@ -293,8 +295,31 @@ class ActuatorProblem:
         if self.refusals.names and not any(np.iscomplexobj(v) for v in varied.values()):
             self.refusals.add(run.computed, count)
         values = margins(self.rows, run.computed, numbers, count, self.subject.reserves)
+        if self.scales:
+            values = values / self._divisors(numbers)
         goals = (self.goal, *self.goals)
         return [goal.value(run.computed, self.subject.cases) for goal in goals], _bounded(values)
+
+    def _divisors(self, numbers: Numbers) -> Array:
+        """Divisors (rows, 1 or designs) of the margins: `scales` where the limit is 0, else 1."""
+        bounds = [row.limit_of.value(numbers) for row in self.rows]
+        width = max(getattr(bound, "size", 1) for bound in bounds)
+        zero = real(_stacked(bounds, width)) == 0
+        return where(zero, np.array(self.scales)[:, None], 1.0)
+
+
+def _scales(rows: Sequence[LimitRow]) -> tuple[float, ...]:
+    """Size of each margin of a limit of 0: its value at the start, if this is above 1 in SI.
+
+    Such a margin is the value itself. As 1e7 N/m it would outweigh the relative margins of all
+    other limits in the solver, whose tolerances would lie below its rounding error.
+    """
+    scales = []
+    for row in rows:
+        size = abs(float(np.real(row.margin[0])))
+        zero = not np.any(real(row.limit))
+        scales.append(size if zero and 1 < size < UNLIMITED else 1.0)
+    return tuple(scales) if any(scale > 1 for scale in scales) else ()
 
 
 def _bounded(margin: Array) -> Array:
@@ -415,7 +440,7 @@ def build(
     refusals, lenient = Refusals(metrics & plugin_names), replace(subject, lenient=True)
     required = None if plugin_names else metrics
     actuator = ActuatorProblem(
-        lenient, goal, paths, rows, fixed, problem, required, refusals, goals
+        lenient, goal, paths, rows, fixed, problem, required, refusals, goals, scales=_scales(rows)
     )
     if not plugin_names:
         actuator = _recording(actuator, numbers.read)
@@ -459,7 +484,11 @@ def _recording(actuator: ActuatorProblem, read: Collection[str]) -> ActuatorProb
         paths=actuator.paths,
         read=read,
         limits=actuator.rows,
-        goals=[sorted(actuator.metrics or ()), goals],
+        goals=[
+            sorted(actuator.metrics or ()),
+            goals,
+            *([actuator.scales] if actuator.scales else ()),
+        ],
     )
     return replace(actuator, recorded=recorded)
 

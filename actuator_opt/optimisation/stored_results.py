@@ -51,7 +51,7 @@ def to_plain(result: Optimisation | ParetoFront) -> dict[str, Any]:
         return files.index(text)
 
     def place(design: Design) -> int:
-        tree = plain(to_tree(design))
+        tree = plain(to_tree(design, stated=True))
         if tree not in designs:
             designs.append(tree)
         return designs.index(tree)

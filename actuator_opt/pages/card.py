@@ -1,8 +1,8 @@
 """The card of a design: what the terminal shows of an evaluation or an optimisation.
 
 At most 30 lines of an evaluation and 35 of an optimisation, 80 columns wide: the verdict, missed
-limits, what holds the design, its dimensions or masses, doubts, and the next command. The whole
-page (`report.page`) follows with ``--verbose``.
+limits, what holds the design, its dimensions or masses, doubts, and the next command. The second
+and third duty cycle add two lines each. The whole page (`report.page`) follows with ``--verbose``.
 """
 
 from __future__ import annotations
@@ -22,10 +22,12 @@ from ..rendering import text
 from ..rendering.blocks import Block, Cell, Column, Notes, Pair, Row, Status, Table
 from ..rendering.terminal import PAINTS
 from ..rendering.text import DASH, sentence
-from . import limits, optimum, report
+from . import duty, limits, optimum, report
 
 MOST_LIMITS = 11
 """Largest number of limits in a table: misses first, then the smallest margins."""
+BESIDE_DUTY = 8
+"""Largest number of limits in a table if the design has duty cycles, which need lines, too."""
 MOST_MISSES, MOST_HELD = 6, 7
 """Largest number of missed limits and of active limits on the card of an optimisation."""
 MOST_REMEDIES = 6
@@ -74,7 +76,7 @@ def blocks(
             [*_dimensions(optimisation), *_bounds(optimisation)],
         ]
     foot = [*_outcomes(subject), *_doubts(subject), *_next(subject, again, written=written)]
-    groups = [[*_head(subject)], *body, foot]
+    groups = [[*_head(subject)], *body, duty.card_blocks(evaluation), foot]
     return [Pair([group], tight=True) for group in groups if group]
 
 
@@ -226,7 +228,8 @@ def _limits(evaluation: Evaluation) -> list[Block]:
     rows: list[Requirement | Check] = [*_by_margin(evaluation.requirements)]
     first = sum(not row.met for row in evaluation.requirements)
     rows[first:first] = _missed_checks(evaluation)
-    return _limit_table("quantity", rows, MOST_LIMITS, evaluation)
+    most = MOST_LIMITS if evaluation.duty is None else BESIDE_DUTY
+    return _limit_table("quantity", rows, most, evaluation)
 
 
 def _misses(evaluation: Evaluation) -> list[Block]:

@@ -33,7 +33,7 @@ from ..rendering.blocks import (
 from ..rendering.ink import Ink
 from ..rendering.text import DASH
 from ..studies.seal import SealStudy
-from . import dynamics, limits, optimum, prices, seal, section, stiffness, trust, valve, wall
+from . import duty, dynamics, limits, optimum, prices, seal, section, stiffness, trust, valve, wall
 
 MASSES = "Parts and mass"
 """Title of the table of masses, which summaries show."""
@@ -100,7 +100,8 @@ def page(
             blocks += optimum.sizes_and_choices(optimisation)
         blocks.append(masses(evaluation))
     blocks += stiffness.stiffness_blocks(evaluation, curve_shown=optimisation is None)
-    blocks += [*dynamics.dynamics_blocks(evaluation), *valve.valve_blocks(evaluation), *later]
+    blocks += [*dynamics.dynamics_blocks(evaluation), *valve.valve_blocks(evaluation)]
+    blocks += [*duty.duty_blocks(evaluation), *later]
     if optimisation is not None:
         blocks += trust.trust_blocks(optimisation) + prices.price_blocks(optimisation)
         blocks += optimum.robust_tables(optimisation)

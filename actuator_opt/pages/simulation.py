@@ -485,7 +485,8 @@ def _run(simulation: Simulation) -> str:
 def remarks(simulation: Simulation, more: Sequence[str] = ()) -> list[str]:
     """Sentences: doubts, and the notes of the run, of the caller and of the scenario."""
     own = simulation.scenario.notes.strip()
-    notes = [*doubts(simulation), *_open(simulation), *simulation.notes, *more]
+    cycle = () if simulation.cycle is None else simulation.cycle.notes
+    notes = [*doubts(simulation), *_open(simulation), *cycle, *simulation.notes, *more]
     notes += [own] if own else []
     return [sentence(pretty(" ".join(note.split()))) for note in notes]
 
@@ -604,6 +605,7 @@ def _blocks(simulation: Simulation, more: Sequence[str]) -> Iterator[Block]:
     bench = [f"{key.label} {key.value} {key.unit}, {key.note}" for key in _bench(simulation)]
     if bench:
         yield Notes("Flows of the valve", bench, on="terminal")
+    yield from _cycle(simulation)
     yield from _step(simulation)
     energies = table_rows(simulation)
     if energies:
@@ -618,6 +620,31 @@ def _blocks(simulation: Simulation, more: Sequence[str]) -> Iterator[Block]:
     if simulation.seconds:
         seconds = f"Computing time {number(simulation.seconds, 2)} s."
         yield Notes("", [seconds], headless=True, style="dim", on="terminal")
+
+
+def _cycle(simulation: Simulation) -> Iterator[Block]:
+    """Results of the last period of a duty cycle beside the quasi-static ones."""
+    cycle = simulation.cycle
+    if cycle is None:
+        return
+    columns = [
+        Column("duty cycle", width=1.0, least=16),
+        Column("quasi-static", "right"),
+        Column("simulated", "right", strong=True),
+        Column("difference", "right", style="dim"),
+    ]
+    rows: list[list[Cell]] = [
+        [
+            row.label,
+            value_text(row.quantity, row.quasi_static),
+            value_text(row.quantity, row.simulated),
+            DASH if row.difference is None else pretty(f"{100 * row.difference:+.2g} %"),
+        ]
+        for row in cycle.rows
+    ]
+    error = value_text(LENGTH, cycle.position_error, 3)
+    title = f"{cycle.cycle}, {number(cycle.start, 4)} to {number(cycle.end, 4)} s, both models"
+    yield Table(title, columns, rows, note=f"Position error: {error} root mean square.")
 
 
 def _results(simulation: Simulation) -> Block | None:

@@ -9,10 +9,11 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..base.quantities import RESULTS
-from ..rendering.axes import SIZE, fitted, per_cent, time_words
+from ..rendering.axes import per_cent, time_words
 from ..rendering.chart import Axis, Curve, Panel
-from ..rendering.ink import BLUE, GREY, OCHRE, Ink, text_width
+from ..rendering.ink import Ink
 from ..rendering.text import number, value_text
+from ..rendering.waterfall import Step, waterfall
 from ..simulation.result import Simulation
 
 ENERGY = RESULTS["supply_energy"]
@@ -38,10 +39,6 @@ MOST_CURVES = 5
 AGREES = 0.01
 """Greatest allowed difference between an energy and the integral of its sampled power, as a share
 of all energy (our choice)."""
-ROW, TOP = 3.7, 9.0
-"""Height of a row, and of the title above the rows [mm]."""
-GIVEN, TAKEN, KEPT = BLUE, OCHRE, "#7d868e"
-"""Fill colours of sources, of sinks, and of stored energy."""
 
 
 class EnergyShare(NamedTuple):
@@ -88,43 +85,24 @@ def _words(share: EnergyShare) -> str:
 
 
 def share_picture(simulation: Simulation, width: float) -> Ink | None:
-    """Picture of the sources and sinks of energy; None if there are no sources.
-
-    The bars of the sources add up from the left; the bars of the sinks lead back to zero. This is
-    an `Ink` drawing instead of a `Chart`, because each bar starts where the bar above it ends and
-    has its numbers beside it.
-    """
+    """Picture of the sources and sinks of energy; None if there are no sources."""
     shown = shares(simulation)
     if not shown:
         return None
-    ink = Ink(width, TOP + ROW * len(shown) + 1.0)
-    ink.text(0.0, 4.0, "Where the energy went", size=6.8, bold=True)
     efficiency = simulation.values.get("efficiency")
+    beside = ""
     if efficiency is not None:
-        words = f"efficiency {value_text(RESULTS['efficiency'], efficiency, 3)}"
-        ink.text(width, 4.0, words, anchor="right", color=GREY)
-    total = sum(share.energy for share in shown if share.energy > 0)
-    values = [value_text(ENERGY, abs(share.energy), 4) for share in shown]
-    parts = [per_cent(abs(share.energy) / total) for share in shown]
-    names = min(max(text_width(share.name, SIZE) for share in shown), 0.42 * width)
-    left, right = names + 1.5, width - max(text_width(words, SIZE) for words in values) - 13.5
-    scale = (right - left) / total
-    level = 0.0
-    for k, (share, words, part) in enumerate(zip(shown, values, parts, strict=True)):
-        y = TOP + ROW * (k + 0.5)
-        ink.text(names, y, fitted(share.name, names, SIZE), size=SIZE, anchor="right")
-        begin, level = level, level + share.energy
-        start, end = sorted(left + scale * min(max(v, 0.0), total) for v in (begin, level))
-        colour = KEPT if "oil, walls" in share.name else GIVEN if share.energy > 0 else TAKEN
-        bar = max(end - start, 0.25)
-        ink.box(min(start, right - bar), y - 1.15, bar, 2.3, fill=colour, stroke=None)
-        if k + 1 < len(shown):
-            at = left + scale * min(max(level, 0.0), total)
-            ink.line((at, y + 1.15), (at, y + ROW - 1.15), pen=0.1, stroke=GREY)
-        ink.text(width - 11.5, y, words, size=SIZE, anchor="right")
-        ink.text(width, y, part, size=SIZE, anchor="right", color=GREY)
-    ink.line((left, TOP), (left, TOP + ROW * len(shown)), pen=0.13)
-    return ink
+        beside = f"efficiency {value_text(RESULTS['efficiency'], efficiency, 3)}"
+    steps = [
+        Step(
+            share.name,
+            share.energy,
+            value_text(ENERGY, abs(share.energy), 4),
+            kept="oil, walls" in share.name,
+        )
+        for share in shown
+    ]
+    return waterfall("Where the energy went", steps, width, beside=beside)
 
 
 # ---- over time ----

@@ -147,7 +147,8 @@ def simulation_figure(
 ) -> Ink:
     """One drawing: signals over time on the left, panels for the kind of run on the right."""
     height = min(max(height, LEAST), MOST)
-    known = measured or {}
+    cycle = simulation.cycle
+    known = measured or ({} if cycle is None else cycle.traces)
     left = strips_with_room(strips(simulation, known), height)
     right: list[Panel | Ink] = []
     for part in _parts_with_room(parts(simulation, known, static), height):
@@ -241,12 +242,14 @@ def curve(
 def overlay(
     simulation: Simulation, name: str, measured: Measured, *, start: float = 0.0
 ) -> list[Curve]:
-    """The measured values of a signal, drawn behind the simulated curve."""
+    """The measured or quasi-static values of a signal, drawn behind the simulated curve."""
     if name not in measured or name not in simulation.told:
         return []
     time, values = measured[name]
     shown = scaled(simulation.told[name].quantity, values)
-    return [Curve("measured", np.asarray(time, dtype=float) - start, shown, weight="broad")]
+    cycle = simulation.cycle
+    words = "quasi-static" if cycle is not None and measured is cycle.traces else "measured"
+    return [Curve(words, np.asarray(time, dtype=float) - start, shown, weight="broad")]
 
 
 def timed(panel: Panel, span: tuple[float, float], words: str = "time") -> Panel:

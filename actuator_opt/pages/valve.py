@@ -7,6 +7,7 @@ import numpy as np
 from ..base.quantities import INPUTS, SCENARIOS
 from ..evaluation.result import Evaluation
 from ..evaluation.valve_study import ValveCurve, ValveStudy
+from ..models.play import band_of_position
 from ..rendering import text
 from ..rendering.blocks import Block, Cell, Chart, Column, Table
 from ..rendering.chart import Axis, Curve, Panel
@@ -17,6 +18,7 @@ HEIGHT = 62.0
 OWN, CENTRES = 0, {"open": 1, "critical": 2, "closed": 3}
 """Styles of the curves."""
 FLOW, PRESSURE = SCENARIOS["flow_value"], INPUTS["pressure"]
+SIGNAL, POSITION = SCENARIOS["signal_value"], INPUTS["stop_travel"]
 CONDUCTANCE, OVERLAP = INPUTS["conductance"], INPUTS["spool_overlap"]
 
 
@@ -25,10 +27,14 @@ def valve_blocks(evaluation: Evaluation) -> list[Block]:
     study = evaluation.valve
     if study is None:
         return []
-    return [_figure(study), _table(study)]
+    valve = evaluation.design.valve
+    whole = valve is not None and valve.flow_curve is not None
+    title = "Valve over its whole signal" if whole else "Valve about its null"
+    blocks = [_figure(study, title), _table(study)]
+    return blocks if study.hysteresis is None else [*blocks, _hysteresis(study)]
 
 
-def _figure(study: ValveStudy) -> Block:
+def _figure(study: ValveStudy, title: str) -> Block:
     lap = max((abs(curve.overlap or 0.0) for curve in study.curves[1:]), default=0.0)
     note = (
         f'Supply at {PRESSURE.text(study.supply_pressure)}, oil of load case "{study.case}". Flow: '
@@ -39,7 +45,7 @@ def _figure(study: ValveStudy) -> Block:
             f" For comparison, the same spool with open ({text.value_text(OVERLAP, -lap)}), "
             f"critical, and closed ({text.value_text(OVERLAP, lap)}) centre."
         )
-    return Chart("Valve about its null", panels(study), note, height=HEIGHT)
+    return Chart(title, panels(study), note, height=HEIGHT)
 
 
 def panels(study: ValveStudy) -> list[Panel]:
@@ -73,6 +79,34 @@ def _panel(
 def _shown(study: ValveStudy) -> list[ValveCurve]:
     """The textbook's centres, with this valve drawn last, on top of them."""
     return [*study.curves[1:], study.curves[0]]
+
+
+def _hysteresis(study: ValveStudy) -> Block:
+    """Hysteresis and threshold, with the bands of position that they leave."""
+    assert study.hysteresis is not None
+    assert study.threshold is not None
+    gain = study.position_gain
+
+    def row(name: str, volts: float) -> list[Cell]:
+        band = None if gain is None else float(band_of_position(signal_band=volts, gain=gain))
+        return [
+            name,
+            text.value_text(SIGNAL, volts),
+            DASH if band is None else text.value_text(POSITION, band),
+        ]
+
+    columns = [
+        Column("", "left", 1.0),
+        Column("signal", "right", 1.0),
+        Column("position", "right", 1.0),
+    ]
+    note = (
+        "Position: signal divided by the gain of the position loop. With the hysteresis, the loop "
+        "stops within this band; a reversal within the threshold has no effect. Gain and phase "
+        "margins leave out both; a simulation includes them."
+    )
+    rows = [row("hysteresis", study.hysteresis), row("threshold", study.threshold)]
+    return Table("Valve: hysteresis and threshold", columns, rows, note=note)
 
 
 def _table(study: ValveStudy) -> Block:

@@ -14,7 +14,7 @@ that such a valve acted.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import pi, sqrt
 from typing import Literal, NamedTuple
@@ -556,15 +556,25 @@ class HeldCylinder:
             return dict.fromkeys(CHAMBERS, CONSTANT_PRESSURE)
         return self.motion.held
 
-    def model(self, end: End, position: Array, *, area: float) -> linear.LinearActuator:
+    def model(
+        self,
+        end: End,
+        position: Array,
+        *,
+        area: float,
+        flows: Mapping[Chamber, float] | None = None,
+    ) -> linear.LinearActuator:
         """Linear model with a needle of given area; zero area is closed.
 
         Oil leaves both chambers through their needle, as in the half cycle that empties them. The
-        needle is linearised so that it dissipates as much energy as the thesis' sinusoidal motion.
+        needle is linearised so that it dissipates as much energy as a sinusoidal flow of the
+        amplitudes `flows` [m^3/s]; default: those of the thesis' speed amplitude. The turbulent
+        part of its resistance is proportional to that amplitude, and to 1/area^2.
         """
         throttles = {}
         for chamber in CHAMBERS:
-            flow = EQUAL_ENERGY * PAPER.speed * self.areas[chamber]
+            amplitude = flows[chamber] if flows else PAPER.speed * self.areas[chamber]
+            flow = EQUAL_ENERGY * amplitude
             conductance: Array = 0.0
             if area > 0:
                 conductance = 1 / orifice.orifice_resistance(area=area, flow=flow, **self.oil)
@@ -572,11 +582,17 @@ class HeldCylinder:
         return replace(self.motion, throttles=throttles, held=self.ends(end)).model(position)
 
     def stiffness(
-        self, end: End, position: Array, frequency: Sequence[float] | Array, *, area: float
+        self,
+        end: End,
+        position: Array,
+        frequency: Sequence[float] | Array,
+        *,
+        area: float,
+        flows: Mapping[Chamber, float] | None = None,
     ) -> Array:
-        """Complex dynamic stiffness (frequencies, positions)."""
+        """Complex dynamic stiffness (frequencies, positions); `flows` as for `model`."""
         response = linear.dynamic_stiffness(
-            model=self.model(end, position, area=area),
+            model=self.model(end, position, area=area, flows=flows),
             frequency=np.asarray(frequency).reshape(-1, 1, 1),
         )
         value = np.asarray(response.real + 1j * response.imaginary)

@@ -20,6 +20,7 @@ from .components import chambers, circuit, motion, valve
 from .components.circuit import LOOPS, ChamberVolumes, Circuit, InitialState, loop_of
 from .components.supply import SupplyBuilder
 from .components.valve import Feedback, command, inner
+from .duty_cycle import plant_of
 from .system import System
 
 PRESSURES = INPUTS["pressure"]
@@ -86,6 +87,7 @@ def assemble(
         omit sticking friction
     free : names of values that become variables; `Circuit.freed` has those that the circuit uses
     """
+    plant = plant_of(scenario, plant, loaded=linear)
     circuit = Circuit(
         scenario=scenario,
         plant=plant,

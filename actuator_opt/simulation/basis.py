@@ -13,9 +13,11 @@ from typing import Any
 from ..base.dataclass import dataclass
 from ..base.quantities import BASIS, Quantity
 from ..base.tables import Displayed
+from ..evaluation.spool import EDGES
 from ..metrics.documentation import describe, function_of
 from ..models import chamber
 from ..models.lapped_spool import LappedSpool
+from ..models.metering_curve import CurveSpool
 from .components import motion
 from .components.circuit import Circuit
 
@@ -238,8 +240,15 @@ def _valve(circuit: Circuit) -> Iterator[BasisValue]:
         yield BasisValue("edge_flow", data.rated * BAR, rated, model)
         yield BasisValue("supply_leakage", data.leakage_supply * BAR, leak, model)
         yield BasisValue("tank_leakage", data.leakage_tank * BAR, leak, model)
-    if data.lapped is not None:
-        yield from _lapped(data.lapped)
+    if isinstance(data.metering, LappedSpool):
+        yield from _lapped(data.metering)
+    if isinstance(data.metering, CurveSpool):
+        stated = "valve.flow_curve, valve.edge_coefficients"
+        for name, edge in EDGES.items():
+            full = float(getattr(data.metering, name).coefficient(1.0)) * BAR
+            yield BasisValue(f"edge_flow_{edge}", full, stated, "metering_curve.curve_value")
+    for name, volts in zip(("threshold", "hysteresis"), data.bands, strict=False):
+        yield BasisValue(f"valve_{name}", volts, f"valve.{name}", "play.play_half_widths")
     if data.slew_rate is not None:
         yield BasisValue("spool_slew_rate", data.slew_rate, "valve.slew_rate")
     yield BasisValue("full_signal", data.signal, "valve.signal")

@@ -3,26 +3,16 @@
 Each call of an integrator covers a section without jumps. It returns the states at the sample times
 or raises `Stuck`. LSODA switches between stiff and non-stiff steps and uses the exact Jacobian.
 Radau serves as an independent check.
-
-CVODES of SUNDIALS is called through CasADi (extra `fast`) and runs without Python code. The
-expressions of a system are translated to CasADi, with each shared operation only once; CasADi
-derives the exact Jacobian. No compiler is needed. If CVODES fails, another integrator takes over
-that section or reports why it cannot. LSODA calls the compiled program of the equations, so it is
-the faster method: for the shipped servo drives, CVODES takes 1.8 to 3.1 times as long.
 """
 
 from __future__ import annotations
 
 import math
-import signal
-import threading
 import warnings
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import field
 from functools import cache
-from types import FrameType
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 
@@ -30,16 +20,14 @@ from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, Unsolvable
 from ..base.numeric import Array
 from ..base.progress import tell
-from ..base.symbolic import Symbol
 from ..base.symbolic.equations import PointFunctions
-from ..base.symbolic.expression import needed
 from .system import Compiled
 
-Method = Literal["lsoda", "radau", "cvodes"]
+Method = Literal["lsoda", "radau"]
 
 
-RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8, "cvodes": 1e-7}
-"""Relative tolerance of a step; tightest for Radau, which checks the other methods."""
+RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8}
+"""Relative tolerance of a step; tighter for Radau, which checks LSODA."""
 
 
 CHUNK = 200
@@ -160,214 +148,6 @@ def radau(compiled: Compiled, relative: float, evaluations: list[int]) -> Advanc
     return advance
 
 
-SHARPER = 0.1
-"""Factor on the absolute tolerances for CVODES (our choice: its error then equals that of
-LSODA)."""
-
-
-_EVEN = 1e-8
-"""Relative difference up to which two sample intervals count as equal."""
-
-
-_BUFFERED = 1
-"""Memory index of the buffer of a CasADi function, for reading its statistics."""
-
-
-def library() -> Any:
-    """Import ``casadi``; if the extra is not installed, the error says so.
-
-    Raises
-    ------
-    InputError
-        CasADi is missing
-    """
-    try:
-        import casadi
-    except ImportError as missing:
-        message = "the method cvodes needs CasADi"
-        raise InputError(Diagnostic(message, 'pip install "actuator-opt[fast]"')) from missing
-    return casadi
-
-
-def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
-    """Translate expressions to CasADi's symbols.
-
-    Parameters
-    ----------
-    outputs : expressions, which may have parts in common
-
-    Returns
-    -------
-    the free symbols by name (variables and flags), and the outputs
-
-    Raises
-    ------
-    InputError
-        the expressions use a record, which is a table and has no formula
-    """
-    casadi = library()
-    free: dict[str, Any] = {}
-    translations: dict[int, Any] = {}
-
-    def translated(value: Any) -> Any:
-        return translations[value.index] if isinstance(value, Symbol) else float(value)
-
-    for node in needed(outputs):
-        if node.op in ("variable", "flag"):
-            translations[node.index] = free[node.args[0]] = casadi.SX.sym(node.args[0])
-        elif node.op == "table":
-            message = "the method cvodes cannot read values from a record"
-            raise InputError(Diagnostic(message, "integrate by lsoda, without --fast"))
-        else:
-            translations[node.index] = _operation(
-                casadi, node.op, [translated(arg) for arg in node.args]
-            )
-    return free, [translated(output) for output in outputs]
-
-
-def _operation(casadi: Any, op: str, args: Sequence[Any]) -> Any:
-    """An operation by its CasADi code. CasADi's operators would be slow, as they check shapes."""
-    unary, binary = casadi.SX.unary, casadi.SX.binary
-    if op == "where":
-        condition, yes, no = args
-        on_true = binary(casadi.OP_IF_ELSE_ZERO, condition, yes)
-        on_false = binary(casadi.OP_IF_ELSE_ZERO, unary(casadi.OP_NOT, condition), no)
-        return binary(casadi.OP_ADD, on_true, on_false)
-    number = getattr(casadi, f"OP_{op.upper()}")
-    result = unary(number, *args) if len(args) == 1 else binary(number, *args)
-    # the slope at zero is 0, as in `symbolic`
-    if op == "sqrt" or (op == "pow" and 0 < args[1] < 1):
-        return binary(casadi.OP_IF_ELSE_ZERO, args[0], result)
-    return result
-
-
-def cvodes(compiled: Compiled, relative: float, evaluations: list[int]) -> Advance:
-    """Integration by CVODES; LSODA takes over sections where it fails.
-
-    Raises
-    ------
-    InputError
-        CasADi is missing, or a measured record is an input of the equations
-    """
-    fallback = lsoda(compiled, RELATIVE["lsoda"], evaluations)
-    casadi = library()
-    equations = _equations(casadi, compiled)
-    unit = compiled.tolerances
-    built: dict[int, _Integrator] = {}
-
-    def advance(times: Array, y: Array, m: tuple[bool, ...], max_steps: int) -> Array:
-        if max_steps not in built:
-            built[max_steps] = _Integrator(casadi, equations, relative, max_steps)
-        run = built[max_steps]
-        samples = np.empty((len(times), len(y)))
-        samples[0] = y
-        for begin, end in _even(times):
-            try:
-                with interruptible():
-                    states = run(times[begin], times[end], end - begin, samples[begin] / unit, m)
-            except RuntimeError:
-                return fallback(times, y, m, max_steps)
-            evaluations[0] += run.evaluations()
-            samples[begin + 1 : end + 1] = states * unit
-        return samples
-
-    return advance
-
-
-@contextmanager
-def interruptible() -> Iterator[None]:
-    """Let Ctrl-C stop the program; CasADi would turn it into a failed integration."""
-    pressed = False
-    before = signal.getsignal(signal.SIGINT)
-
-    def press(number: int, frame: FrameType | None) -> None:
-        nonlocal pressed
-        pressed = True
-        if callable(before):
-            before(number, frame)
-        raise KeyboardInterrupt
-
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
-        yield
-        return
-    signal.signal(signal.SIGINT, press)
-    try:
-        yield
-    except RuntimeError:
-        if pressed:
-            raise KeyboardInterrupt from None
-        raise
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-class _Integrator:
-    """CVODES for `CHUNK` samples; for fewer samples, the remaining steps have zero length."""
-
-    def __init__(
-        self, casadi: Any, equations: dict[str, Any], relative: float, max_steps: int
-    ) -> None:
-        options = {
-            "reltol": relative, "abstol": SHARPER, "max_num_steps": max_steps,
-            "disable_internal_warnings": True, "show_eval_warnings": False,
-        }  # fmt: skip
-        ends = np.arange(1.0, CHUNK + 1.0)
-        run = casadi.integrator("states", "cvodes", equations, 0.0, ends, options)
-        self.function = run
-        size: int = run.nnz_in("x0")
-        self.begin, self.parameters = np.zeros(size), np.zeros(run.nnz_in("p"))
-        self.steps, self.states = np.zeros(CHUNK), np.zeros((CHUNK, size))
-        self.buffer, self.call = run.buffer()
-        for name, values in (("x0", self.begin), ("p", self.parameters), ("u", self.steps)):
-            self.buffer.set_arg(run.index_in(name), values.data)
-        self.buffer.set_res(run.index_out("xf"), self.states.data)
-
-    def __call__(
-        self, start: float, stop: float, count: int, states: Array, m: tuple[bool, ...]
-    ) -> Array:
-        """States at `count` evenly spaced times, after `start` up to `stop`."""
-        self.begin[:], self.parameters[0], self.parameters[1:] = states, start, m
-        self.steps[:count], self.steps[count:] = (stop - start) / count, 0.0
-        self.call()
-        return self.states[:count]
-
-    def evaluations(self) -> int:
-        """Number of evaluations of the rates in the last call."""
-        return int(self.function.stats(_BUFFERED)["nfevals"])
-
-
-def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
-    """Rates of the states, per sample interval instead of per second, as CVODES needs them.
-
-    Each state is in units of its tolerance, because CVODES has a single tolerance for all.
-    """
-    system, unit = compiled.system, compiled.tolerances
-    free, rates = translate([state.rate for state in system.states])
-
-    def symbol(name: str) -> Any:
-        return free.get(name, casadi.SX.sym(name))
-
-    states = casadi.vertcat(*(symbol(str(s.symbol.args[0])) for s in system.states))
-    sample, start, step = (casadi.SX.sym(name) for name in ("sample", "start", "step"))
-    scaled = casadi.SX.sym("x", len(system.states))
-    (ode,) = casadi.substitute(
-        [step * casadi.vertcat(*rates) / unit],
-        [casadi.vertcat(states, symbol("t"))],
-        [casadi.vertcat(scaled * unit, start + step * sample)],
-    )
-    parameters = casadi.vertcat(start, *(symbol(name) for name in system.flags))
-    return {"t": sample, "x": scaled, "p": parameters, "u": step, "ode": ode}
-
-
-def _even(times: Array) -> Iterator[tuple[int, int]]:
-    """First and last sample of every section with equal intervals, at most `CHUNK` steps long."""
-    steps = np.diff(times)
-    changes = np.flatnonzero(np.abs(np.diff(steps)) > _EVEN * steps[1:]) + 1
-    for first, last in zip([0, *changes], [*changes, len(steps)], strict=True):
-        for begin in range(first, last, CHUNK):
-            yield begin, min(begin + CHUNK, last)
-
-
 LOOK = 2e-3
 """Longest time between two checks of a switch [s] (our choice: half the period of a fast oil
 oscillation)."""
@@ -443,15 +223,13 @@ def integrate(
     duration : simulated time [s]
     sample_time : interval between the samples of the result [s]; the method chooses its own
         internal steps
-    method : "lsoda", "radau" or "cvodes" (extra ``fast``)
+    method : "lsoda" or "radau"
     relative : relative tolerance of a step; None for the usual tolerance of the method
 
     Raises
     ------
     Unsolvable
         the step became too small, or a state is not finite
-    InputError
-        "cvodes" without CasADi, or with a record
     """
     evaluations = [0]
     tolerance = RELATIVE[method] if relative is None else relative
@@ -605,10 +383,13 @@ def _suspects(times: Array, margin: Array, slope: Array) -> Array:
     crosses = b <= 0
     valley = ~crosses & (c < 0) & (d > 0)
     if valley.any():
+        a, b, c, d = (end[valley] for end in (a, b, c, d))
+        below = np.zeros(a.shape, dtype=bool)
         for s in np.linspace(0.1, 0.9, 9):
             guard = (1 + 2 * s) * (1 - s) ** 2 * a + s * (1 - s) ** 2 * c
             guard += s * s * (3 - 2 * s) * b + s * s * (s - 1) * d
-            crosses = crosses | (valley & (guard <= 0))
+            below |= guard <= 0
+        crosses[valley] = below
     return crosses
 
 
@@ -647,7 +428,7 @@ def _state_at(run: _Run, start: float, t: float, y: Array, m: tuple[bool, ...]) 
 
 
 METHODS: Final[dict[Method, Callable[[Compiled, float, list[int]], Advance]]] = {
-    "lsoda": lsoda, "radau": radau, "cvodes": cvodes,
+    "lsoda": lsoda, "radau": radau,
 }  # fmt: skip
 LAST = 0.1
 """Share of a record, at its end, in which motion counts as steady (our choice)."""

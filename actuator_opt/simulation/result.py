@@ -19,6 +19,7 @@ from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..studies.plant import Plant
 from .basis import Basis
 from .components.circuit import Circuit, Loop, acts_after, frequencies, loop_of
+from .duty_cycle import CycleComparison
 from .harmonic import dynamic_stiffness_of_record, windows
 from .integrate import LAST, Event, Stuck, Trajectory
 from .linear import StepMetrics, Tuned, step_metrics
@@ -152,6 +153,8 @@ class Simulation(Displayed):
     basis: Basis
     """Values of the equations, each with its origin."""
     second: Second | None = None
+    cycle: CycleComparison | None = None
+    """Results beside the quasi-static ones, if a duty cycle was simulated."""
     evaluations: int = 0
     seconds: float = 0.0
 
@@ -176,7 +179,8 @@ class Simulation(Displayed):
         for row in self.requirements:
             limit = RESULTS[row.metric].text(row.limit)
             lines.append(f"  {row.metric} {row.sense} {limit}: {'met' if row.met else 'missed'}")
-        return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
+        notes = [*(() if self.cycle is None else self.cycle.notes), *self.notes]
+        return "\n".join([*lines, *(f"  note: {note}" for note in notes)])
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON, SI; the samples are left out."""
@@ -220,6 +224,7 @@ class Simulation(Displayed):
                 {"name": event.name, "time": event.time, "on": event.on} for event in self.events
             ],
             "second_integrator": self._second(),
+            **({} if self.cycle is None else {"duty_cycle": self.cycle.to_dict()}),
             "notes": list(self.notes),
             "basis": self.basis.to_dict(),
             "evaluations": self.evaluations,

@@ -27,12 +27,13 @@ from .assemble import assemble
 from .basis import basis
 from .components import motion
 from .components.circuit import Circuit
+from .duty_cycle import compare, plant_of
 from .integrate import Method, Stuck, Trajectory, integrate
 from .linear import CAUSES, UNHELD, Tuned, tune
 from .result import Second, SignalLabel, Simulation
 from .system import Compiled
 
-SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "cvodes": "radau", "radau": "lsoda"}
+SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "radau": "lsoda"}
 """For each integration method, the second method that checks it."""
 COMPARED = (
     "position", "speed", "pressure_a", "pressure_b", "shaft_speed", "shaft_angle", "spool",
@@ -84,10 +85,12 @@ def simulate(
     files = {} if records is None else records
     actuator = plant(subject)
     tuned = tune(scenario, actuator, files, with_margins=margins)
-    return run(
+    result = run(
         scenario, actuator, files, tuned, verify=verify, method=method,
         spec=spec_of(subject, scenario), begin=begin,
     )  # fmt: skip
+    cycle = compare(scenario, subject, actuator, result.time, result.signals)
+    return result if cycle is None else replace(result, cycle=cycle)
 
 
 def run(
@@ -106,6 +109,7 @@ def run(
     The other parameters are as in `simulate`.
     """
     begin = perf_counter() if begin is None else begin
+    actuator = plant_of(scenario, actuator, loaded=True)
     circuit = assemble(scenario, actuator, records, None if tuned is None else tuned.gains)
     compiled = circuit.system.compiled()
     step = scenario.sample_time or scenario.duration / SAMPLES
@@ -207,6 +211,7 @@ def _notes(
         *recorded_notes(scenario, circuit.records),
         *circuit.system.notes,
         *_controller_notes(tuned),
+        *_cycle(circuit),
         *_simplifications(scenario, actuator),
         *_bristles(circuit, time, signals),
         *_reference_outside_stroke(actuator, signals),
@@ -230,6 +235,23 @@ def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
             f"the linear loop is unstable: gain margin {tuned.margins.gain:.2f}; its "
             "oscillation grows until the valve or the friction limits it"
         )
+
+
+def _cycle(circuit: Circuit) -> Iterator[str]:
+    """A note on what a duty cycle puts in place of the load's mass, and on its feed-forward."""
+    name = circuit.scenario.cycle
+    if name is None:
+        return
+    mass = INPUTS["load_mass"].text(circuit.plant.mass, 3)
+    yield (
+        f"the force of {name} contains the inertia of the load: load.mass and load.inertia are "
+        f"left out, and only rod and piston move ({mass}); the gain and its margins are those with "
+        "the load"
+    )
+    yield (
+        f"the valve opening that {name} needs by the quasi-static model is added to the signal of "
+        "the controller; control.feed_forward replaces it"
+    )
 
 
 def _simplifications(scenario: Scenario, actuator: Plant) -> Iterator[str]:
@@ -362,10 +384,16 @@ def _reference_outside_stroke(actuator: Plant, signals: Mapping[str, Array]) -> 
 
 def spec_of(subject: PreparedDesign, scenario: Scenario) -> str:
     """Hash of all inputs that affect the result."""
-    content = scenario.model_dump(mode="json")
+    content = scenario.model_dump(mode="json", exclude={"reproduces"})
     if content["load"]["cylinder"]:
         leave_out_unset(content["load"]["cylinder"]["valve"])
-    if content["control"] and content["control"]["dead_band_jump"] is None:
-        del content["control"]["dead_band_jump"]
+    for block, key in (
+        (content["control"], "dead_band_jump"),
+        (content["control"], "feed_forward"),
+        (content, "cycle"),
+        (content, "unset"),
+    ):
+        if block and not block[key]:  # unset fields are left out: hashes of older runs stay valid
+            del block[key]
     text = spec_hash(subject) + json.dumps(content, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:16]

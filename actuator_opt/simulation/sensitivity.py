@@ -24,6 +24,7 @@ from ..design.kinds import Fraction, ValueFault
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import Scenario
 from ..design.structure import Loc, child, child_at, leaves, number_of
+from ..design.valve import Valve
 from ..evaluation.build import prepare
 from ..evaluation.kernel import PreparedDesign
 from ..studies.plant import plant
@@ -43,7 +44,8 @@ DESIGN = (
     "cylinder.bore", "rod.outer_diameter", "cylinder.dead_volume_a", "cylinder.dead_volume_b",
     "piston.leakage_conductance", "seals.piston.friction_coefficient",
     "seals.rod.friction_coefficient", "stiffness.seal_deflection", "valve.rated_flow",
-    "valve.leakage_flow", "valve.natural_frequency", "valve.damping_ratio", "control.gain",
+    "valve.leakage_flow", "valve.natural_frequency", "valve.frequency_90deg",
+    "valve.frequency_3db", "valve.damping_ratio", "valve.slew_rate", "control.gain",
     "load.mass", "load.inertia", "ideal.area_a", "ideal.area_b", "ideal.mass",
     "ideal.dead_volume_a", "ideal.dead_volume_b", "ideal.stiffness", "ideal.leakage",
 )  # fmt: skip
@@ -51,7 +53,7 @@ DESIGN = (
 LEAST = {"hold_drift": 1e-7, "overshoot": 1e-5, "steady_state_ratio": 1e-5, "following_error": 1e-7}
 """Values of some results below which they count as rounding error [SI] (our choice)."""
 _TIMES = ("start", "end", "phase", "frequency")
-_APART = ("duration", "sample_time", "requirements", "analysis", "set")
+_APART = ("duration", "sample_time", "requirements", "analysis", "set", "unset")
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,6 +256,8 @@ class _Bench:
             return
         design = self.subject.design
         numbers = paths.numbers(design)
+        if design.valve is not None and _damping_follows(design.valve):
+            del numbers["valve.damping_ratio"]
         known = [name for name in DESIGN if name in numbers and has_effect(name, design.ideal)]
         yield from map(self._target, known)
         for loc, _, value in leaves(self.scenario, Scenario):
@@ -331,6 +335,12 @@ class _Bench:
         gains_kept = not target.path.startswith("control.")
         tuned = self.tuned if gains_kept else tune(scenario, actuator, self.records)
         return run(scenario, actuator, self.records, tuned).values
+
+
+def _damping_follows(valve: Valve) -> bool:
+    """Whether the damping ratio of the spool follows from two frequencies that are stated."""
+    other = valve.natural_frequency or valve.frequency_90deg
+    return valve.frequency_3db is not None and other is not None
 
 
 def _least(name: str, step: float) -> float:

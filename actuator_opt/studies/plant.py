@@ -22,11 +22,11 @@ from ..evaluation.circuit import CHAMBERS, Chamber
 from ..evaluation.kernel import ModelRun, PreparedDesign, compute
 from ..evaluation.limits import MaterialValues
 from ..evaluation.rings import Ring
-from ..evaluation.spool import Read, course_edges, lapped_spool, spool_motion
+from ..evaluation.spool import Read, course_edges, metering_spool, spool_motion, spool_plays
 from ..evaluation.springs import OIL, Give
 from ..evaluation.values import Values
 from ..models import end_stop, lines, linkage
-from ..models.lapped_spool import LappedSpool
+from ..models.metering_spool import MeteringSpool
 from .bench import Bench, bench, first_case
 
 LEAST_AIR = 1e-4
@@ -90,8 +90,18 @@ class ValveData:
     """Signal that centres the spool [V]."""
     slew_rate: float | None = None
     """Largest speed of the spool [V/s]; None: no limit."""
-    lapped: LappedSpool | None = None
-    """Spool whose edges have laps; None: the course's law, with the three flow coefficients."""
+    metering: MeteringSpool | None = None
+    """Spool whose edges have laps or curves; None: the course's law, with the three flow
+    coefficients."""
+    plays: tuple[float, ...] = ()
+    """Half widths of the plays of hysteresis and threshold [V]; empty: no hysteresis."""
+
+    @property
+    def bands(self) -> tuple[float, ...]:
+        """Threshold and hysteresis [V]; empty without hysteresis."""
+        if not self.plays:
+            return ()
+        return 2 * self.plays[0], self.plays[0] + self.plays[-1]
 
     def start(self, side: float) -> float:
         """Signal, from that of the centred spool, at which the edges of a direction open [V].
@@ -99,9 +109,9 @@ class ValveData:
         `side` is 1 for the edges P-A and B-T, and -1 for A-T and P-B. It is zero for the course's
         law and for edges without overlap; an underlap counts as zero too.
         """
-        if self.lapped is None:
+        if self.metering is None:
             return 0.0
-        spool = self.lapped
+        spool = self.metering
         edges = (spool.supply_a, spool.b_tank) if side > 0 else (spool.a_tank, spool.supply_b)
         stroke = max(float(spool.start(edge)) for edge in edges)
         return self.signal * spool.signal_share(max(stroke, 0.0))
@@ -277,7 +287,7 @@ def plant(subject: PreparedDesign) -> Plant:
 def _plant(subject: PreparedDesign) -> Plant:
     stated = subject.design.ideal
     if stated is not None:  # the parts that complete the file are never shown
-        design = subject.design.model_copy(update={"ideal": None})
+        design = subject.design.model_copy(update={"ideal": None, "linkage": None})
         return _idealised(plant(replace(subject, design=design)), subject.design, stated)
     v = subject.values()
     done = compute(subject, v)
@@ -350,6 +360,7 @@ def _idealised(whole: Plant, design: Design, stated: Ideal) -> Plant:
                 travel=design.cylinder.stop_travel,
             )
         ),
+        closed_length=stated.closed_length or 0.0,
     )
 
 
@@ -400,9 +411,11 @@ def valve_data(
     read: Read, stated: Valve, *, density: float, kinematic_viscosity: float
 ) -> ValveData:
     """Edges and spool of a valve as its block states it, in an oil."""
-    lapped = lapped_spool(read, stated, density=density, kinematic_viscosity=kinematic_viscosity)
+    metering = metering_spool(
+        read, stated, density=density, kinematic_viscosity=kinematic_viscosity
+    )
     rated = supply = tank = 0.0
-    if lapped is None:
+    if metering is None:
         edges = course_edges(read, viscosity=kinematic_viscosity)
         rated, supply, tank = (float(coefficient) for coefficient in edges)
     motion = spool_motion(read)
@@ -415,7 +428,8 @@ def valve_data(
         damping_ratio=float(motion.damping_ratio),
         offset=float(read("offset")),
         slew_rate=read("slew_rate"),
-        lapped=lapped,
+        metering=metering,
+        plays=tuple(float(width) for width in spool_plays(read)),
     )
 
 

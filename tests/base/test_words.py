@@ -141,7 +141,7 @@ def test_a_bare_number_is_offered_with_its_unit_as_si(quantity):
         if quantity.lower <= number <= quantity.upper:
             assert value == pytest.approx(number, rel=1e-12)
             if "(= " in remedy:
-                shown = remedy.partition("(= ")[2].partition(")")[0]
+                shown = remedy.partition("(= ")[2].rpartition(")")[0]
                 assert read_quantity(shown, quantity) == pytest.approx(number, rel=1e-5)
         else:
             assert offered in {f"{bare} {quantity.unit}", example(quantity)}

@@ -517,6 +517,11 @@ SAMPLES = {
     "retention.pin_shear_stress": {"force": 1e4, "diameter": 1e-2},
     "retention.guide_friction": {"force": -2e3, "friction_coefficient": 0.1},
     "retention.guide_forces": {"side_force": 100.0, "overhang": 0.2, "span": 0.1},
+    "retention.through_rod_guide_forces": {
+        "side_force": 100.0, "overhang": 0.2, "span": 0.1, "second_span": 0.15,
+        "bending_stiffness": 1600.0, "second_bending_stiffness": 900.0, "clearance": 3e-6,
+        "piston_clearance": 5e-6, "second_clearance": 2e-5,
+    },
     "retention.bearing_pressure": {"force": 300.0, "diameter": 12e-3, "length": 1e-2},
     "end_plate.end_plate_stress": {
         "pressure": 1e7, "radius": 12e-3, "thickness": 5e-3, "poissons_ratio": 0.3,

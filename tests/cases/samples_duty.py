@@ -39,7 +39,15 @@ SUPPLY = {
     "accumulator_density": 1500.0, "pump_specific_mass": 1e-3, "specific_energy": 0.6e6,
 }  # fmt: skip
 
+_CHAMBERS = {"driven_area": 4.15476e-4, "other_area": 2.82743e-4}
+_LOAD = {"load": 1000.0, "return_pressure": 5e5, "ratio": 0.46312, **_CHAMBERS}
+_EDGE = {"feed_coefficient": 8.90871e-8}
+
 SAMPLES = {
+    "quasi_static.edge_ratio": {"drain_coefficient": 6e-8, **_EDGE, **_CHAMBERS},
+    "quasi_static.driven_pressures": {"supply_pressure": 210e5, **_LOAD},
+    "quasi_static.speed_limit": {"edge_drop": 13.8787e6, "driven_area": 4.15476e-4, **_EDGE},
+    "quasi_static.needed_supply": {"speed": 0.38, "opening": 0.9, **_LOAD, **_EDGE},
     "rainflow.repeating_cycles": (_stress_of_cycles, HISTORY),
     "rainflow.cycle_stress": (_stress_of_cycles, HISTORY),
     "rainflow.change_cycle": (_stress_of_change, HISTORY),

@@ -53,10 +53,6 @@ SAMPLES = {
         {"piston_area": 4e-4, "travel": 0.06, "line_volume": v} for v in (1e-5, 3e-5)
     ],
     "heat_transfer.oil_exchange_conductance": {"exchange_flow": 2e-5, **OIL_DATA},
-    "heat_transfer.tank_temperature": {
-        "ambient_temperature": 293.0, "hydraulic_power": 1043.0, "pump_efficiency": 0.85,
-        "net_power": -8.3, "cooler_conductance": 30.0,
-    },
     "heat_transfer.friction_heat": [
         {"piston_seal": 6.0, "rod_seal": 2.0, "in_oil": flag} for flag in (False, True)
     ],

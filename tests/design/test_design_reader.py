@@ -334,6 +334,17 @@ def test_lines_need_a_wall():
     assert [f.path for f in found] == ["lines[0].outer_diameter", "lines[1].outer_diameter"]
 
 
+def test_a_line_that_is_too_thin_says_why():
+    """Its laminar drop 128 eta L q/(pi d^4) at 0.1 mm is 5^4 times that of the least, 0.5 mm."""
+    found = faults(GOOD.replace("    inner_diameter: 6 mm", "    inner_diameter: 0.1 mm"))
+    assert [f.path for f in found] == ["lines[0].inner_diameter", "lines[1].inner_diameter"]
+    assert found[0].message.startswith("0.1 mm: too thin for a line: its laminar pressure drop")
+    assert found[0].message.endswith("is 625 times that of 0.5 mm")
+    assert found[0].remedy == "write 0.5 mm or more; a restriction is a ports.throttle"
+    wide = faults(GOOD.replace("    inner_diameter: 6 mm", "    inner_diameter: 2 m"))
+    assert "outside the valid range" in wide[0].message
+
+
 def test_missing_keys_are_placed_at_their_block():
     """A missing key is reported at its section's key, a missing section at the top."""
     text = changed(("  bore: 25 mm\n", ""), ("  cylinder.bore:", "  supply.proof_ratio:"))

@@ -403,3 +403,32 @@ def test_scales_and_a_constant_lever_arm():
     assert (axial.push, axial.pull) == pytest.approx((1600, 1200))
     assert (axial.position_low, axial.position_high) == pytest.approx((0.02, 0.09))
     assert (axial.reversals, axial.torque) == (2, None)
+
+
+def test_columns_under_ignore_and_samples_of_the_block(tmp_path):
+    """Also the column of a known name; the file is written back as it was."""
+    rows = AXIAL.splitlines()
+    lines = [f"{rows[0]},emg [-],temperature [degC]", *(f"{row},x,900" for row in rows[1:])]
+    block = BLOCK.replace("gait_knee.csv", "axial.csv").replace("torque_scale: 1.2\n", "\n")
+    path = write(tmp_path, block)
+    (tmp_path / "axial.csv").write_text("\n".join(lines))
+    text = faults(path)
+    assert 'axial.csv:1: unknown column "emg"' in text
+    path = write(tmp_path, block.replace("starts: 2000", "ignore: [emg, temperature]"))
+    (tmp_path / "axial.csv").write_text("\n".join(lines))
+    design = read_design(path, overrides=[("duty.samples", "50")]).design
+    cycle = design.duty.cycles[0]
+    assert cycle.record.temperature is None
+    assert design.duty.record(cycle).time.size == 4 * 13 + 1  # 49 steps in 4: 13 each
+    (tmp_path / "again.yaml").write_text(to_yaml(design))
+    assert read_design(tmp_path / "again.yaml").design == design
+
+
+def test_unset_and_a_new_kind_of_file(place):
+    """The block can be removed; keys that a new file makes meaningless are named together."""
+    path = place / "knee.yaml"
+    assert read_design(path, overrides=[("duty", None)]).design.duty is None
+    text = faults(path, ("duty.cycles[walk].file", "axial.csv"))
+    assert 'duty.cycles[walk].torque_scale has no meaning; add --unset "duty.cycles[walk]' in text
+    changes = [("duty.cycles[walk].file", "axial.csv"), ("duty.cycles[walk].torque_scale", None)]
+    assert not read_design(path, overrides=changes).design.duty.cycles[0].record.joint

@@ -117,6 +117,8 @@ def test_a_design_already_read():
     """`changed` removes keys in the same way."""
     changed = ao.read(KNEE).changed({"requirements.seal_gap.max": None})
     assert "seal_gap" not in changed.design.requirements
+    values = {"requirements.mass.max": "9 kg", "requirements": None, "requirements.seal_gap": None}
+    assert set(ao.read(KNEE).changed(values).design.requirements) == {"mass"}
 
 
 def test_in_a_scenario(tmp_path):

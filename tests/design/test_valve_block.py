@@ -53,7 +53,8 @@ REFUSED = {
     ),
     "no stroke": (
         [SIZE, SPEED], ["type: lapped", "overlap: 10 um"],
-        "valve.spool.stroke: missing: required with overlap, clearance or area_gradient; add",
+        "valve.spool.stroke: missing: required with overlap, clearance, leakage_flow or "
+        "area_gradient; add",
     ),
     "two sizes": (
         [SIZE, SPEED], ["type: lapped", "stroke: 0.5 mm", "area_gradient: 12 mm"],
@@ -61,9 +62,64 @@ REFUSED = {
         "valve.rated_flow; keep one of them",
     ),
     "two leakages": (
-        [SIZE, SPEED, "leakage_flow: 0.2 l/min"], ["type: lapped"],
-        "valve.leakage_flow: without effect with a lapped spool, which leaks through its "
-        "clearance; remove it, and state spool.clearance",
+        [SIZE, SPEED, "leakage_flow: 0.2 l/min", "rated_viscosity: 32 mm^2/s"],
+        ["type: lapped", "stroke: 0.5 mm", "clearance: 3 um"],
+        "valve.spool.clearance: states the leakage a second time, beside valve.leakage_flow; keep",
+    ),
+    "leakage in any oil": (
+        [SIZE, SPEED, "leakage_flow: 0.2 l/min"], ["type: lapped", "stroke: 0.5 mm"],
+        "valve.rated_viscosity: missing: oil of the data sheet, required with leakage_flow",
+    ),
+    "leakage of an open centre": (
+        [SIZE, SPEED, "leakage_flow: 0.2 l/min", "rated_viscosity: 32 mm^2/s"],
+        ["type: lapped", "stroke: 0.5 mm", "overlap: -5 um"],
+        "valve.leakage_flow: without effect on edges that are open at the centre",
+    ),
+    "leakage of unequal edges": (
+        [SIZE, SPEED, "leakage_flow: 0.2 l/min", "rated_viscosity: 32 mm^2/s"],
+        ["type: lapped", "stroke: 0.5 mm", "pa: {overlap: 5 um}"],
+        "valve.spool.pa.overlap: edges that differ do not leak alike, as valve.leakage_flow says",
+    ),
+    "leakage of half the flow": (
+        [SIZE, SPEED, "leakage_flow: 12 l/min", "rated_viscosity: 32 mm^2/s"],
+        ["type: lapped", "stroke: 0.5 mm"],
+        "valve.leakage_flow: 12 l/min: no clearance follows from it; write more than zero and "
+        "less than 11.95 l/min",
+    ),
+    "leakage by the width": (
+        [SPEED, "leakage_flow: 0.2 l/min"],
+        ["type: lapped", "stroke: 0.5 mm", "area_gradient: 12 mm"],
+        "valve.leakage_flow: needs valve.rated_flow with a lapped spool",
+    ),
+    "threshold and hysteresis": (
+        [SIZE, SPEED, "hysteresis: 1 %", "threshold: 2 %"], [],
+        "valve.threshold: 2 %: more than the hysteresis (1 %), which includes it; write at most",
+    ),
+    "coefficients and flow": (
+        [SIZE, SPEED, "edge_coefficients: {pa: 3 l/min/sqrt(bar), pb: 3 l/min/sqrt(bar), "
+         "at: 3 l/min/sqrt(bar), bt: 3 l/min/sqrt(bar)}"], [],
+        "valve.edge_coefficients: states the size of the edges a second time, beside rated_flow",
+    ),
+    "coefficients of two edges": (
+        [SPEED, "edge_coefficients: {pa: 3 l/min/sqrt(bar), pb: 3 l/min/sqrt(bar), "
+         "at: 3 l/min/sqrt(bar)}"], [],
+        "valve.edge_coefficients.bt: missing",
+    ),
+    "coefficients and drop": (
+        [SPEED, "rated_drop: 30 bar", "edge_coefficients: {pa: 3 l/min/sqrt(bar), "
+         "pb: 3 l/min/sqrt(bar), at: 3 l/min/sqrt(bar), bt: 3 l/min/sqrt(bar)}"], [],
+        "valve.rated_drop: without effect with edge_coefficients",
+    ),
+    "leakage of coefficients": (
+        [SPEED, "leakage_flow: 8 l/min", "edge_coefficients: {pa: 3 l/min/sqrt(bar), "
+         "pb: 1 l/min/sqrt(bar), at: 3 l/min/sqrt(bar), bt: 3 l/min/sqrt(bar)}"], [],
+        "valve.leakage_flow: 8 l/min: not less than the flow of the open valve at the same "
+        "pressure drop; write less than 7.071 l/min",
+    ),
+    "coefficient without root": (
+        [SPEED, "edge_coefficients: {pa: 3 l/min/bar, pb: 3 l/min/sqrt(bar), "
+         "at: 3 l/min/sqrt(bar), bt: 3 l/min/sqrt(bar)}"], [],
+        "valve.edge_coefficients.pa",
     ),
     "lap of the course's law": (
         [SIZE, SPEED], ["overlap: 10 um"],
@@ -132,11 +188,11 @@ def test_every_edge_passes_the_rated_flow(clearance, overlap, tmp_path):
              "at: {overlap: 5 um}"]  # fmt: skip
     lines += [] if clearance is None else [f"clearance: {clearance}"]
     own = plant(design(tmp_path, SIZE, SPEED, spool_lines=lines).subject()).valve
-    from actuator_opt.models.lapped_spool import lapped_flows
+    from actuator_opt.models.metering_spool import spool_flows
 
     for signal in (10.0, -10.0):
-        found = lapped_flows(
-            spool=own.lapped, signal=signal, supply_pressure=70e5, return_pressure=0.0,
+        found = spool_flows(
+            spool=own.metering, signal=signal, supply_pressure=70e5, return_pressure=0.0,
             pressure_a=35e5, pressure_b=35e5,
         )  # fmt: skip
         shares = (found.supply_a, found.b_tank) if signal > 0 else (found.a_tank, found.supply_b)
@@ -145,16 +201,41 @@ def test_every_edge_passes_the_rated_flow(clearance, overlap, tmp_path):
         assert shares[1] == pytest.approx(half * 20 * LITRE, rel=1e-9)
 
 
+@pytest.mark.parametrize("overlap", [0, 20])
+def test_clearance_follows_from_the_leakage(overlap, tmp_path):
+    """At the drop and in the oil of the data sheet each edge leaks and opens as stated."""
+    lines = ["type: lapped", "stroke: 0.5 mm", f"overlap: {overlap} um"]
+    leak = ["leakage_flow: 0.15 l/min", "leakage_drop: 60 bar", "rated_viscosity: 30 mm^2/s"]
+    own = plant(design(tmp_path, SIZE, SPEED, *leak, spool_lines=lines).subject())
+    spool = own.valve.metering
+    assert 1e-6 < spool.supply_a.clearance < 20e-6
+    from actuator_opt.models.lapped_edge import lapped_edge_flow
+    from actuator_opt.models.lapped_leakage import clearance_of_leakage
+
+    oil = {"density": own.oil.density, "dynamic_viscosity": 30e-6 * own.oil.density,
+           "flow_coefficient": spool.flow_coefficient}  # fmt: skip
+    edge = {"clearance": spool.a_tank.clearance, "area_gradient": spool.a_tank.area_gradient} | oil
+    leaks = lapped_edge_flow(uncovered=-overlap * UM, pressure_drop=60e5, **edge)
+    opened = lapped_edge_flow(uncovered=0.5e-3 - overlap * UM, pressure_drop=35e5, **edge)
+    assert leaks == pytest.approx(0.15 * LITRE, rel=1e-8)
+    assert opened == pytest.approx(20 * LITRE, rel=1e-8)
+    again = clearance_of_leakage(
+        leakage=0.15 * LITRE, leakage_drop=60e5, overlap=overlap * UM, stroke=0.5e-3,
+        rated_flow=20 * LITRE, rated_drop=35e5, **oil,
+    )  # fmt: skip
+    assert again == pytest.approx(spool.b_tank.clearance, rel=1e-12)
+
+
 def test_flow_follows_a_stated_curve(tmp_path):
     """Points of the data sheet: 40 % of the signal gives 15 % of the rated flow, either way."""
     lines = ["type: lapped", "curve: [{signal: 5 %, flow: 0 %}, {signal: 40 %, flow: 15 %}]"]
     made = design(tmp_path, SIZE, SPEED, spool_lines=lines)
     own = plant(made.subject()).valve
-    from actuator_opt.models.lapped_spool import lapped_flows
+    from actuator_opt.models.metering_spool import spool_flows
 
     for signal, share in ((4.0, 0.15), (-4.0, -0.15), (0.4, 0.0), (7.0, 0.575), (10.0, 1.0)):
-        found = lapped_flows(
-            spool=own.lapped, signal=signal, supply_pressure=70e5, return_pressure=0.0,
+        found = spool_flows(
+            spool=own.metering, signal=signal, supply_pressure=70e5, return_pressure=0.0,
             pressure_a=35e5, pressure_b=35e5,
         )  # fmt: skip
         assert found.into_a == pytest.approx(share * 20 * LITRE, rel=1e-9, abs=1e-15)
@@ -169,12 +250,13 @@ def test_stated_width_is_the_area_gradient(tmp_path):
     lines = ["type: lapped", "stroke: 0.4 mm", "area_gradient: 15 mm", "flow_coefficient: 0.65",
              "overlap: 20 um"]  # fmt: skip
     own = plant(design(tmp_path, SPEED, spool_lines=lines).subject())
-    edge, density = own.valve.lapped.supply_a, own.oil.density
+    edge, density = own.valve.metering.supply_a, own.oil.density
     from actuator_opt.models.lapped_edge import lapped_edge_flow
 
     flow = lapped_edge_flow(
         uncovered=0.4e-3 - edge.overlap, pressure_drop=50e5, area_gradient=edge.area_gradient,
-        density=density, dynamic_viscosity=0.03, flow_coefficient=own.valve.lapped.flow_coefficient,
+        density=density, dynamic_viscosity=0.03,
+        flow_coefficient=own.valve.metering.flow_coefficient,
     )  # fmt: skip
     by_hand = 0.65 * 15e-3 * 0.38e-3 * math.sqrt(2 * 50e5 / density)
     assert flow == pytest.approx(by_hand, rel=1e-5)
@@ -275,5 +357,5 @@ def test_a_lapped_spool_may_be_changed_by_a_program(tmp_path):
     lines = ["type: lapped", "stroke: 0.5 mm", "clearance: 3 um"]
     made = design(tmp_path, "rated_flow: 10 l/min", "natural_frequency: 120 Hz", spool_lines=lines)
     assert made.changed({"supply.pressure": 150e5}).design.supply.pressure == 150e5
-    with pytest.raises(InputError, match="without effect with a lapped spool"):
+    with pytest.raises(InputError, match="a second time"):
         made.changed({"valve.leakage_flow": "0.2 l/min"})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -107,6 +108,40 @@ variables:
   valve.spool.clearance: {lower: 1 um, upper: 8 um}
 """,
     )
+    monkeypatch.setattr("test_recorded_models.text_of", lambda name: text)
+    test_a_recorded_design_equals_its_models("")
+
+
+CURVE = """  rated_drop: 35 bar
+  flow_curve: |
+    signal [%],q [l/min]
+    0,0.1
+    4,0.15
+    8,0.6
+    30,6
+    100,20
+"""
+LEAKS = """  rated_flow: 20 l/min
+  leakage_flow: 0.2 l/min
+  rated_viscosity: 32 mm^2/s
+  spool: {type: lapped, stroke: 0.5 mm, overlap: 5 um}
+"""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("valve", "varied"),
+    [
+        (CURVE, "  valve.rated_drop: {lower: 20 bar, upper: 50 bar}\n"),
+        (LEAKS, "  valve.leakage_flow: {lower: 0.05 l/min, upper: 0.4 l/min}\n"),
+    ],
+)  # fmt: skip
+def test_a_valve_by_its_data_sheet_is_recorded(valve, varied, monkeypatch):
+    """A flow curve, and a clearance by leakage, each with a variable."""
+    old = "  natural_frequency: 120 Hz\n"
+    block = re.compile(r"(?m)^valve:.*\n(?:  .*\n)+")
+    text = block.sub(lambda _: f"valve:\n{valve}{old}", text_of("servo_knee"))
+    text = text.replace("\nvariables:\n", f"\nvariables:\n{varied}")
     monkeypatch.setattr("test_recorded_models.text_of", lambda name: text)
     test_a_recorded_design_equals_its_models("")
 

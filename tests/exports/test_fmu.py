@@ -194,6 +194,42 @@ def test_a_unit_needs_a_scenario(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+def test_a_scenario_alone_brings_its_design(tmp_path):
+    """The unit equals that of `--scenario` with the same design; `--set` changes either file."""
+    (tmp_path / "one").mkdir()
+    own = exported(SERVO, tmp_path / "one")
+    result = run("export", SERVO, "--format", "fmu", "--out", tmp_path / "two")
+    assert result.code == 0
+    assert (tmp_path / "two" / own.name).read_bytes() == own.read_bytes()
+    (again,) = ao.export(ao.read_scenario(SERVO), formats=["fmu"], folder=tmp_path / "three")
+    assert again.path.read_bytes() == own.read_bytes()
+    sets = ("--set", "load.mass=90 kg", "--set", "duration=3 s")
+    assert run("export", SERVO, "--format", "c", *sets, "--out", tmp_path / "four").code == 0
+    (changed,) = (tmp_path / "four").glob("*.c")
+    files = ao.export(SERVO, formats=["c"], folder=tmp_path / "five")
+    assert changed.read_bytes() != next(f.path for f in files if f.path.suffix == ".c").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "code", "message"),
+    [
+        ("name: x\nduration: 1 s\n", (), 3, 'design: missing; add e.g. "design: knee.yaml"'),
+        (f"name: x\nduration: 1 s\ndesign: {COURSE}\n", ("--format", "step"), 2,
+         "the equations of a scenario have no STEP file; use --format c or fmu"),
+        (f"name: x\nduration: 1 s\ndesign: {COURSE}\n", ("--plugin", __file__), 2,
+         "--plugin: not with a scenario alone; give the design, and the scenario by --scenario"),
+    ],
+)  # fmt: skip
+def test_a_scenario_alone_that_cannot_be_written(text, words, code, message, tmp_path):
+    """One line with what to write, no file."""
+    file = tmp_path / "run.yaml"
+    file.write_text(text, "utf-8")
+    result = run("export", file, "--format", "fmu", *words, "--out", tmp_path / "out")
+    assert result.code == code
+    assert message in result.err
+    assert not (tmp_path / "out").exists()
+
+
 # ---- against the simulation ----
 
 
@@ -245,6 +281,29 @@ def test_both_stops(model, tmp_path):
         expected = np.interp(times, result.time, result.signals[name])
         assert np.max(np.abs(found[:, k] - expected)) <= 1e-3 * np.ptp(expected), name
     assert np.max(np.abs(found[:, 4])) > 1e3
+
+
+def test_a_valve_by_its_data_sheet(tmp_path):
+    """A flow curve from a file, hysteresis and threshold: the unit moves as `simulate`."""
+    rows = "0,0.1", "4,0.1", "8,0.6", "20,6", "50,17", "100,40"
+    (tmp_path / "curve.csv").write_text("\n".join(("signal [%],q [l/min]", *rows)), "utf-8")
+    data = "  flow_curve: curve.csv\n  hysteresis: 5 %\n  threshold: 2 %\n"
+    lines = COURSE.read_text("utf-8").splitlines(keepends=True)
+    kept = [line for line in lines if not line.startswith(("  rated_flow", "  leakage_"))]
+    design = tmp_path / "valve.yaml"
+    design.write_text("".join(kept).replace("valve:\n", f"valve:\n{data}", 1), "utf-8")
+    file = written(tmp_path, STOPS, design=design)
+    unit = opened(file, tmp_path, design).begin()
+    result = ao.simulate(file)
+    stated = {value.name: value.value for value in result.basis.values}
+    assert stated["valve_hysteresis"] == pytest.approx(0.5)
+    assert stated["valve_threshold"] == pytest.approx(0.2)
+    names = ("position", "pressure_a", "pressure_b", "spool")
+    times = np.append(0.0, np.arange(7e-3, 1.59, 7e-3))
+    found = unit.run(times, *names)
+    for k, name in enumerate(names):
+        expected = np.interp(times, result.time, result.signals[name])
+        assert np.max(np.abs(found[:, k] - expected)) <= 1e-3 * np.ptp(expected), name
 
 
 def test_the_spool_has_a_closed_form(tmp_path):

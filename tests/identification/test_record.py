@@ -12,7 +12,7 @@ import pytest
 from hypothesis import example, given, strategies as st
 
 from actuator_opt.base.errors import InputError
-from actuator_opt.base.sheet import decode_record
+from actuator_opt.base.sheets import decode_sheet
 from actuator_opt.identification.record import CHANNELS, parse_record
 
 PLAIN = "t [s],p1 [bar],p2 [bar],x [mm]\n0,10,2,5\n0.001,11,3,6\n"
@@ -273,15 +273,15 @@ def test_bytes_of_a_file_become_text():
     """UTF-8 and UTF-16 with a mark, UTF-8 without and Latin-1 read alike; no workbook is read."""
     text = "t [s],x [µm],T [°C]\n0,1,20\n1,2,21\n"
     for encoding in ("utf-8", "utf-8-sig", "utf-16", "latin-1"):
-        record = parse_record(decode_record(text.encode(encoding), "r.csv"))
+        record = parse_record(decode_sheet(text.encode(encoding), "r.csv"))
         np.testing.assert_allclose(record["x"], [1e-6, 2e-6])
         np.testing.assert_allclose(record["T"], [293.15, 294.15])
     with pytest.raises(
         InputError, match=r"r\.csv: the file is a workbook or an archive, not text; save"
     ):
-        decode_record(b"PK\x03\x04\x14\x00", "r.csv")
+        decode_sheet(b"PK\x03\x04\x14\x00", "r.csv")
     with pytest.raises(InputError, match=r"r\.csv: the file is larger than 1 MB; leave out"):
-        decode_record(b"0" * 1_000_001, "r.csv", most=1_000_000)
+        decode_sheet(b"0" * 1_000_001, "r.csv", most=1_000_000)
 
 
 @given(data=st.binary(max_size=300))
@@ -290,7 +290,7 @@ def test_bytes_of_a_file_become_text():
 def test_bytes_read_or_are_refused(data):
     """No bytes raise anything but an input error."""
     with contextlib.suppress(InputError):
-        parse_record(decode_record(data, "r.csv"))
+        parse_record(decode_sheet(data, "r.csv"))
 
 
 WORDS = st.sampled_from(

@@ -164,18 +164,6 @@ def test_a_line_longer_than_the_stroke_exchanges_nothing():
     np.testing.assert_allclose(volumes, [24e-6, 14e-6, 0.0, 0.0], atol=1e-20)
 
 
-def test_tank_of_the_worked_example():
-    """1043 W at 85 %, 8.3 W absorbed, 30 W/K: 1235.36 W of heat, 61.1786 degC; no cooler: NaN."""
-    supply = {
-        "ambient_temperature": 293.15, "hydraulic_power": 1043.0, "pump_efficiency": 0.85,
-        "net_power": -8.3,
-    }  # fmt: skip
-    tank = heat_transfer.tank_temperature(cooler_conductance=30.0, **supply)
-    assert tank - 273.15 == pytest.approx(61.1786, **SIX_DIGITS)
-    assert (tank - 293.15) * 30.0 == pytest.approx(1235.36, **SIX_DIGITS)
-    assert np.isnan(heat_transfer.tank_temperature(cooler_conductance=0.0, **supply))
-
-
 @given(st.floats(0.0, 1e3), st.floats(0.0, 1e3), st.booleans())
 def test_friction_heat_is_split_without_loss(piston, rod, in_oil):
     """All heat goes somewhere; half the rod seal's to the rod, or all to the oil."""

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, strategies as st
 from scipy.optimize import brentq
 
-from actuator_opt.models import lapped_edge, lapped_spool, valve
+from actuator_opt.models import lapped_edge, lapped_spool, metering_spool, valve
 from actuator_opt.models.lapped_spool import LappedSpool, SpoolEdge
 
 RHO, MU, C, W = 870.0, 0.03, 0.611, 20e-3
@@ -35,7 +35,7 @@ def spool(*overlaps, clearance=None, rounding=0.0, stroke=1e-3):
 
 def flows(one, signal, pressure_a, pressure_b):
     """Flows of the edges with no pressure in the tank line."""
-    return lapped_spool.lapped_flows(
+    return metering_spool.spool_flows(
         spool=one, signal=signal, supply_pressure=SUPPLY, return_pressure=0.0,
         pressure_a=pressure_a, pressure_b=pressure_b,
     )  # fmt: skip
@@ -190,7 +190,7 @@ def test_sag_of_a_closing_edge_is_half_that_of_one_that_keeps_its_leakage():
         return found.into_a
 
     kept = brentq(course, -1.0, 1.0, xtol=1e-12)
-    closing = lapped_spool.holding_stroke(
+    closing = metering_spool.holding_stroke(
         spool=one, chamber="a", into=(SUPPLY - load) / 2, out=(SUPPLY + load) / 2
     )
     assert closing / per_volt / kept == pytest.approx(0.5, abs=0.02)
@@ -216,7 +216,7 @@ def test_the_spool_stops_at_its_stroke():
 def test_the_held_chamber_gains_no_oil(overlap, clearance, pressure, lost, chamber):
     """At the holding stroke as much oil enters as leaves, whatever lap, pressure and leakage."""
     one = spool(overlap, overlap + 2 * UM, overlap - UM, overlap, clearance=clearance)
-    x = lapped_spool.holding_stroke(
+    x = metering_spool.holding_stroke(
         spool=one, chamber=chamber, into=SUPPLY - pressure, out=pressure, lost=lost
     )
     signal = 10.0 * x / one.stroke * (1 if chamber == "a" else -1)
@@ -230,7 +230,7 @@ def test_slopes_are_those_of_the_whole_valve(clearance):
     """An underlapped spool: gains and conductances are differences about the held load."""
     one, force = spool(-30 * UM, clearance=clearance), 20e5
     a, b = (SUPPLY + force) / 2, (SUPPLY - force) / 2
-    slopes = lapped_spool.lapped_slopes(
+    slopes = metering_spool.held_slopes(
         spool=one, supply_pressure=SUPPLY, return_pressure=0.0, pressure_a=a, pressure_b=b
     )
     held = brentq(lambda u: flows(one, u, a, b).into_a, -5.0, 5.0, xtol=1e-14)
@@ -252,7 +252,7 @@ def test_an_ideal_spool_is_the_course_valve_without_leakage():
     pressures = {
         "supply_pressure": SUPPLY, "return_pressure": 0.0, "pressure_a": 80e5, "pressure_b": 60e5
     }  # fmt: skip
-    both = lapped_spool.lapped_slopes(spool=one, **pressures)
+    both = metering_spool.held_slopes(spool=one, **pressures)
     for way, extending in ((both.extending, True), (both.retracting, False)):
         other = valve_slopes(
             rated_coefficient=full, leakage_coefficient=0.0, signal=10.0, extending=extending,
@@ -264,7 +264,7 @@ def test_an_ideal_spool_is_the_course_valve_without_leakage():
 def test_a_covered_edge_is_taken_where_it_opens():
     """With overlap each direction has the gain of its own open edge; the held spool leaks less."""
     c = 3 * UM
-    both = lapped_spool.lapped_slopes(
+    both = metering_spool.held_slopes(
         spool=spool(25 * UM, clearance=c), supply_pressure=SUPPLY, return_pressure=0.0,
         pressure_a=SUPPLY / 2, pressure_b=SUPPLY / 2,
     )  # fmt: skip
@@ -289,7 +289,7 @@ def test_a_curve_gives_the_stroke_and_its_slope():
         assert value == pytest.approx(slope * 1e-3 / 10.0)
     assert one.signal_share(0.0) == pytest.approx(0.05)
     assert one.signal_share(0.45e-3) == pytest.approx(0.65)
-    both = lapped_spool.lapped_slopes(
+    both = metering_spool.held_slopes(
         spool=one, supply_pressure=SUPPLY, return_pressure=0.0, pressure_a=SUPPLY / 2,
         pressure_b=SUPPLY / 2,
     )  # fmt: skip

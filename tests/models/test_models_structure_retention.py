@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from math import cos, cosh, inf, log, pi, sinh, sqrt, tanh
 from pathlib import Path
 
@@ -120,6 +121,81 @@ def test_guide_forces_balance(force, overhang, span):
     assert piston * span == pytest.approx(force * overhang, rel=1e-9)
     pressure = retention.bearing_pressure(force=head, diameter=12e-3, length=10e-3)
     assert pressure * 120e-6 == pytest.approx(head, rel=1e-12)  # projected area 120 mm^2
+
+
+def beam_on_bearings(force, overhang, spans, stiffness, plays):
+    """Forces on three bearings with play, by beam elements and springs that switch on contact."""
+    cuts = [overhang, *spans]
+    sizes = [length / 4 for length in cuts for _ in range(4)]
+    rigidity = [ei for ei in (stiffness[0], *stiffness) for _ in range(4)]
+    nodes = len(sizes) + 1
+    matrix = np.zeros((2 * nodes, 2 * nodes))
+    for k, (h, ei) in enumerate(zip(sizes, rigidity, strict=True)):
+        element = ei / h**3 * np.array([
+            [12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h],
+            [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h * h, -6 * h, 4 * h * h],
+        ])  # fmt: skip
+        matrix[2 * k : 2 * k + 4, 2 * k : 2 * k + 4] += element
+    places, spring = (8, 16, 24), 1e13
+    load = np.zeros(2 * nodes)
+    load[0] = force
+    for sides in product((-1, 0, 1), repeat=3):  # pressed down, free, or up
+        total, right = matrix.copy(), load.copy()
+        for place, side, play in zip(places, sides, plays, strict=True):
+            total[place, place] += spring if side else 0.0
+            right[place] += spring * side * play
+        if sum(map(abs, sides)) < 2:
+            continue
+        shift = np.linalg.solve(total, right)
+        at = shift[list(places)]
+        forces = [
+            -spring * (y - side * play) if side else 0.0
+            for y, side, play in zip(at, sides, plays, strict=True)
+        ]
+        held = all(f * side <= 1e-9 for f, side in zip(forces, sides, strict=True))
+        if held and all(abs(y) <= c + 2e-8 for y, c in zip(at, plays, strict=True)):
+            return -forces[0], forces[1], forces[2]
+    raise AssertionError("no state of the contacts is in balance")
+
+
+@pytest.mark.parametrize("force", [1.0, 40.0, 300.0, 2000.0, 20000.0])
+@pytest.mark.parametrize(
+    ("spans", "stiffness", "plays"),
+    [
+        ((0.1, 0.15), (1600.0, 1600.0), (3e-5, 5e-5, 2e-5)),
+        ((0.2, 0.05), (1600.0, 300.0), (3e-5, 5e-5, 2e-5)),
+        ((0.06, 0.3), (400.0, 900.0), (1e-5, 1e-5, 8e-5)),
+        ((0.1, 0.1), (1600.0, 1600.0), (0.0, 2e-5, 1e-6)),
+    ],
+)
+def test_a_through_rod_on_three_bearings(force, spans, stiffness, plays):
+    """Beam elements with contact find the same forces in every state of the contacts."""
+    found = retention.through_rod_guide_forces(
+        side_force=force, overhang=0.2, span=spans[0], second_span=spans[1],
+        bending_stiffness=stiffness[0], second_bending_stiffness=stiffness[1],
+        clearance=plays[0], piston_clearance=plays[1], second_clearance=plays[2],
+    )  # fmt: skip
+    assert found == pytest.approx(
+        beam_on_bearings(force, 0.2, spans, stiffness, plays), rel=1e-3, abs=1e-3 * force
+    )
+
+
+def test_limits_of_a_through_rod():
+    """No play: three moments, P = F e (1/b1 + 1/(2 b2)); much play at one bearing: a lever."""
+    sizes = {
+        "side_force": 100.0, "overhang": 0.2, "span": 0.1, "second_span": 0.25,
+        "bending_stiffness": 1600.0, "second_bending_stiffness": 1600.0, "clearance": 0.0,
+    }  # fmt: skip
+    tight = retention.through_rod_guide_forces(**sizes, piston_clearance=0.0, second_clearance=0.0)
+    assert tight[1] == pytest.approx(20 * (1 / 0.1 + 1 / 0.5))
+    assert tight[2] == pytest.approx(-20 * 0.1 / (2 * 0.25 * 0.35))
+    wide = retention.through_rod_guide_forces(**sizes, piston_clearance=1.0, second_clearance=0.0)
+    assert wide == pytest.approx((100 + 20 / 0.35, 0.0, 20 / 0.35))
+    free = retention.through_rod_guide_forces(**sizes, piston_clearance=0.0, second_clearance=1.0)
+    assert free[:2] == pytest.approx(
+        retention.guide_forces(side_force=100.0, overhang=0.2, span=0.1)
+    )
+    assert free[2] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_guide_friction_is_that_of_a_cosine_pressure():

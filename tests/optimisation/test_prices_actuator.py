@@ -2,11 +2,13 @@
 
 from dataclasses import replace
 from pathlib import Path
+from time import process_time
 
 import numpy as np
 import problems
 import pytest
 import report_fixture as fixture
+import yaml
 from cli_runner import BENCH
 from report_fixture import overlaps
 
@@ -48,6 +50,60 @@ def test_rosen_suzuki_prices_are_its_multipliers():
     for row in rows:
         slope = (row.resolved_up - row.resolved_down) / (2e-3 * row.value)
         assert slope == pytest.approx(row.price, abs=1e-4)
+
+
+MOVED = (
+    "cylinder.bore", "rod.outer_diameter", "barrel.layup[0].thickness", "barrel.layup[1].thickness",
+)  # fmt: skip
+
+
+@ao.metric("stiffness_rest", dimension="stiffness", label="stiffness less 10 kN/mm")
+def stiffness_rest(design):
+    """A metric in N/m with the natural limit 0."""
+    return design.metric("stiffness_min") - 10e6
+
+
+def knee(requirement, limit):
+    """The problem of the knee with four variables and the stiffness limited in some way."""
+    data = yaml.load((DESIGNS / "knee.yaml").read_text("utf-8"), Loader=yaml.BaseLoader)
+    del data["requirements"]["stiffness_min"]
+    data["requirements"][requirement] = {"min": limit}
+    data["variables"] = {path: data["variables"][path] for path in MOVED}
+    text = yaml.safe_dump(data, sort_keys=False)
+    return build(ao.read(text, plugins=(stiffness_rest,)).subject())
+
+
+def priced(actuator):
+    """Solution, prices by two parameters, and processor time of the prices."""
+    solution, begin = solve(actuator.problem), process_time()
+    asked = actuator.parametric(("supply.pressure", "requirements.seal_gap.max"))
+    return solution, prices(asked, solution, bounds=False, change=0.02), process_time() - begin
+
+
+def test_a_limit_of_zero_is_scaled_in_the_solver():
+    """Its row has the size of a relative margin; once the limit is not 0, it is relative to it."""
+    actuator = knee("stiffness_rest", "0")
+    index = [row.limit_of.metric for row in actuator.rows].index("stiffness_rest")
+    start, rest = actuator.problem.start[:, None], float(actuator.rows[index].value[0])
+    assert abs(rest) > 1e5
+    row = actuator.evaluate(start).constraints[index, 0]
+    assert row == pytest.approx(0.5 if rest > 0 else -1)  # m/(1 + m) of m = 1
+    numbers = {"requirements.stiffness_rest.min": np.array([2 * abs(rest)])}
+    row = actuator.evaluate(start, numbers).constraints[index, 0]
+    assert row == pytest.approx(-0.5 if rest > 0 else -1.5)
+
+
+@pytest.mark.long
+def test_a_limit_of_zero_in_large_units_has_the_same_prices():
+    """Stiffness - 10 kN/mm >= 0 is stiffness >= 10 kN/mm: optimum, prices, re-solved designs."""
+    plain, wanted, _ = priced(knee("stiffness_min", "10 kN/mm"))
+    zero, found, seconds = priced(knee("stiffness_rest", "0"))
+    assert zero.objective == pytest.approx(plain.objective, rel=1e-12)
+    for row, other in zip(found, wanted, strict=True):
+        assert row.price == pytest.approx(other.price, rel=1e-3)
+        assert row.resolved_up == pytest.approx(other.resolved_up, rel=1e-9)
+        assert row.resolved_down == pytest.approx(other.resolved_down, rel=1e-9)
+    assert seconds < 5
 
 
 def test_hs71_price_is_its_multiplier():

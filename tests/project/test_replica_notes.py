@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from actuator_opt.replicas import MODULES, papers
+from actuator_opt.replicas import CASES, MODULES, papers
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def test_equations_stand_in_order(monkeypatch, entry):
         papers.equations("made-up")
 
 
-@pytest.mark.parametrize("paper", MODULES.values())
+@pytest.mark.parametrize("paper", sorted({*MODULES.values(), *CASES.values()}))
 def test_every_number_has_its_place(paper):
     """The shipped notes: a place for each number, and no empty one."""
     for entry in papers._data(paper)["published"].values():

@@ -112,6 +112,8 @@ def test_only_the_stated_numbers_count(files):
         (("area_b: 8 cm^2", "area_b: 0 cm^2"), "ideal.area_b"),
         (("stroke: 400 mm, ", ""), "ideal.stroke: missing"),
         (("valve:", "cylinder: {bore: 40 mm, stroke: 1 m}\nvalve:"), "ideal states the cylinder"),
+        (("valve:", "linkage: {base_radius: 0.3 m, crank_radius: 0.3 m}\nvalve:"), "closed_length"),
+        (("mass: 60 kg", "mass: 60 kg, closed_length: 1 m"), "no effect without linkage"),
         (("valve:", "requirements: {mass: {max: 1 kg}}\nvalve:"), "remove it, or remove ideal"),
     ],
 )

@@ -16,8 +16,9 @@ from scipy.optimize import brentq
 from simulation_case import AREA_A, AREA_B, BAR, OIL, VALVE, plant, run, scenario
 
 from actuator_opt.models import linear
-from actuator_opt.models.lapped_spool import LappedSpool, SpoolEdge, lapped_slopes
+from actuator_opt.models.lapped_spool import LappedSpool, SpoolEdge
 from actuator_opt.models.loop import ControllerGains
+from actuator_opt.models.metering_spool import held_slopes
 from actuator_opt.simulation.assemble import assemble
 from actuator_opt.simulation.linear import Linear
 
@@ -35,7 +36,7 @@ def lapped(*overlaps, clearance=None, shares=(1.0, 1.0, 1.0, 1.0), **changes):
         for overlap, share in zip(overlaps, shares, strict=True)
     )
     spool = LappedSpool(*edges, STROKE, 10.0, RHO, MU, C)
-    return replace(VALVE, lapped=spool, **changes)
+    return replace(VALVE, metering=spool, **changes)
 
 
 def sharp(y, width, drop):
@@ -176,8 +177,8 @@ def test_both_tiers_have_the_same_loop():
         load={"force": [{"shape": "constant", "value": hold}]}, initial={"position": 0.08},
     )  # fmt: skip
     ours = Linear.of(assemble(scene, own, {}, None, linear=True)).about(position=0.08).loops
-    slopes = lapped_slopes(
-        spool=own.valve.lapped, supply_pressure=SUPPLY, return_pressure=0.0,
+    slopes = held_slopes(
+        spool=own.valve.metering, supply_pressure=SUPPLY, return_pressure=0.0,
         pressure_a=70 * BAR, pressure_b=70 * BAR,
     )  # fmt: skip
     omega = np.array([5.0, 100.0, 400.0, 900.0])
@@ -223,7 +224,7 @@ def test_a_curve_with_a_dead_band_is_linearised_beyond_it():
     rates = []
     for points in ((), ((0.04, 0.0), (0.5, 0.23))):
         valve = lapped(0.0)
-        own = plant(valve=replace(valve, lapped=replace(valve.lapped, curve=points)))
+        own = plant(valve=replace(valve, metering=replace(valve.metering, curve=points)))
         scene = scenario(
             control={"position": [{"shape": "constant", "value": 0.0}]},
             load={"force": [{"shape": "constant", "value": 70 * BAR * (AREA_A - AREA_B)}]},

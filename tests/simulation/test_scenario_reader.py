@@ -495,6 +495,7 @@ def test_every_signal_is_checked():
         "motor.torque", "load.force", "load.torque", "load.drive.position", "load.cylinder.signal",
         "signal",
         "control.position", "control.speed", "control.shaft_speed", "control.shaft_angle",
+        "control.feed_forward",
     ]  # fmt: skip
     for loc in part_lists():
         tree = leaf = {}
@@ -725,6 +726,54 @@ def test_command_line_values_find_their_file(folder):
     assert design.valve.rated_flow == pytest.approx(20e-3 / 60)
     loaded, read = both(folder, LOOP, overrides=[("cylinder.bore", "0.027")])
     assert read.design.cylinder.bore == 0.027  # comes after the scenario's own
+
+
+REMOVED = """\
+unset:
+  - seals.piston.back_up
+  - seals.piston.back_up_material
+  - seals.piston.back_up_thickness
+  - load_cases[stance].side_load
+  - requirements.stiffness_min
+"""
+
+
+def test_keys_of_the_design_that_a_scenario_removes(folder):
+    """They take their defaults, before `set` and the command line set values."""
+    before = both(folder, LOOP)[1].design
+    assert before.seals.piston.back_up != "none"
+    assert before.load_cases[0].side_load == 30
+    assert "stiffness_min" in before.requirements
+    text = LOOP.replace("set:\n", REMOVED + "set:\n  requirements.stiffness_min.max: 9 kN/mm\n")
+    after = both(folder, text)[1].design
+    assert after.seals.piston.back_up == "none"
+    assert after.load_cases[0].side_load == 0
+    limit = after.requirements["stiffness_min"]
+    assert (limit.min, limit.max) == (None, pytest.approx(9e6))
+    rings = {"back_up": "one", "back_up_material": "back_up_ptfe", "back_up_thickness": "1.2 mm"}
+    again = both(folder, text, overrides=[(f"seals.piston.{k}", x) for k, x in rings.items()])
+    assert again[1].design.seals.piston.back_up == "one"
+
+
+@pytest.mark.parametrize(
+    ("line", "message", "remedy"),
+    [
+        ("valve.offset", "is not stated, so it cannot be unset", "remove this entry"),
+        ("cylinder.stroke", "cannot be unset: it is required", "set it instead"),
+        ("cushionn", "unknown PATH", 'did you mean "cushion"?'),
+        ("'barrel.layup[0]'", "an entry of a list cannot be unset", "change it in the file"),
+        ("seals.piston.back_up", "without it, seals.piston.back_up_material and seals.piston."
+         "back_up_thickness have no meaning", 'to the list "unset" of the scenario'),
+    ],
+)  # fmt: skip
+def test_what_a_scenario_cannot_remove(folder, line, message, remedy):
+    """One line at the entry of the list, with place and remedy."""
+    text = LOOP.replace("set:\n", f"unset:\n  - {line}\nset:\n")
+    (fault,) = together(folder, text)
+    assert fault.file.endswith("run.yaml")
+    assert (fault.line, fault.column) == place(text, line)
+    assert message in fault.message
+    assert remedy in fault.remedy
 
 
 @pytest.mark.parametrize(
@@ -972,7 +1021,7 @@ def test_schema_takes_good_files():
     for text in (SHORT, *GOOD.values()):
         assert list(validator.iter_errors(yaml.safe_load(text))) == []
     more = "  name: x\n  materials.iso_vg_32.density: 870 kg/m^3\n  barrel.layup[1].angle: 80 deg\n"
-    text = LOOP.replace("set:\n", "set:\n" + more)
+    text = LOOP.replace("set:\n", REMOVED + "set:\n" + more)
     assert list(validator.iter_errors(yaml.safe_load(text))) == []
 
 
@@ -990,6 +1039,8 @@ def test_schema_takes_good_files():
         ("  cylinder.bore: 25 mm", "  cylinder.bor: 25 mm"),
         ("  cylinder.bore: 25 mm", "  cylinder.bore: 25 bar"),
         ("  gas_volume: 0.3 l", "  gas_volum: 0.3 l"),
+        ("set:\n", "unset: [cushionn]\nset:\n"),
+        ("set:\n", "unset: cushion\nset:\n"),
     ],
 )
 def test_schema_refuses_what_the_reader_refuses(folder, old, new):

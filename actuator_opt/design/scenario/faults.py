@@ -205,6 +205,8 @@ def reference(view: FileView) -> Iterator[Fault]:
     if not isinstance(child_at(view.tree, ("control",)), dict):
         return
     references = stated_references(view)
+    if view.has("cycle"):  # which states the reference itself
+        return
     if not references:
         remedy = f'add a list "position:" (or {", ".join(list(REFERENCES)[1:])})'
         yield Fault(("control", "position"), "missing: no reference", remedy)
@@ -237,6 +239,7 @@ def tuning(view: FileView) -> Iterator[Fault]:
     control_law = LAWS.get(law or "")
     if control_law is None or tuning_kind not in keys["tuning"].choices:
         return
+    references = references or (["position"] if view.has("cycle") else [])
     loop = references[0] if references else None
     for name, gain in REFERENCES.items():
         if not view.has("control", gain):
@@ -435,6 +438,23 @@ def held_ports(view: FileView) -> Iterator[Fault]:
         yield Fault(("ends",), f"{ends}: held_ports needs the lines to end at the valve", remedy)
 
 
+def duty_cycle(view: FileView) -> Iterator[Fault]:
+    """Check that a scenario of a duty cycle states no other reference, load or start."""
+    if not view.has("cycle"):
+        return
+    where = "beside a duty cycle, which states reference, load and start"
+    remedy = "remove it, or remove cycle"
+    keys = ("signal", "motor", "held_ports")
+    yield from without_effect(view, (), keys, where, remedy)
+    yield from without_effect(view, ("control",), REFERENCES, where, remedy)
+    yield from without_effect(view, ("load",), entries(ScenarioLoad), where, remedy)
+    yield from without_effect(view, ("initial",), ("position", "speed"), where, remedy)
+    ends = view.text("ends")
+    if ends is not None and ends != "valve" and ends in entries(Scenario)["ends"].choices:
+        message = f"{ends}: a duty cycle needs the lines to end at the valve"
+        yield Fault(("ends",), message, 'write "valve", or remove cycle')
+
+
 CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     *SIGNAL_CHECKS,
     *CONTROL_CHECKS,
@@ -445,6 +465,7 @@ CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     friction,
     motor,
     held_ports,
+    duty_cycle,
 )
 
 
@@ -458,6 +479,7 @@ def cross_field(tree: Any) -> Iterator[Fault]:
 def design_faults(scenario: Scenario, design: Design) -> Iterator[Fault]:
     """Yield all contradictions between scenario and design, at locations of the scenario."""
     yield from _missing_components(scenario, design)
+    yield from _cycle_of_design(scenario, design)
     stroke = design.cylinder.stroke
     begin = scenario.initial.position
     place = None if begin is None else position_at(begin, stroke)
@@ -476,6 +498,7 @@ def _missing_components(scenario: Scenario, design: Design) -> Iterator[Fault]:
     needs_valve = {
         ("signal",): bool(scenario.signal),
         ("control",): scenario.control is not None,
+        ("cycle",): scenario.cycle is not None,
         ("held_ports",): scenario.held_ports is not None,
         ("motor",): scenario.motor is not None,
         ("ends",): scenario.ends == "valve",
@@ -491,3 +514,34 @@ def _missing_components(scenario: Scenario, design: Design) -> Iterator[Fault]:
     if scenario.load.torque and getattr(design, "linkage", None) is None:
         remedy = "add linkage to the design, or write load.force"
         yield Fault(("load", "torque"), "the design has no linkage", remedy, at_key=True)
+
+
+PERIODS = 3
+"""Number of periods of a duty cycle that a remedy proposes, and that are simulated by default (our
+choice: the last of them is periodic)."""
+
+
+def _cycle_of_design(scenario: Scenario, design: Design) -> Iterator[Fault]:
+    """Check that the design has the duty cycle, and that the scenario lasts for one period."""
+    if scenario.cycle is None:
+        return
+    cycles = () if design.duty is None else design.duty.cycles
+    cycle = next((cycle for cycle in cycles if cycle.name == scenario.cycle), None)
+    if cycle is None:
+        names = ", ".join(cycle.name for cycle in cycles)
+        remedy = f"write one of {names}" if names else "add duty.cycles to the design"
+        yield Fault(("cycle",), f"the design has no duty cycle {scenario.cycle}", remedy)
+        return
+    if design.ideal is not None:
+        message = "a design with the block ideal has no quasi-static results of duty cycles"
+        yield Fault(("cycle",), message, "remove cycle, and state load.force and control")
+        return
+    if cycle.record.supply_pressure is not None:
+        message = f"{cycle.name} states the supply pressure of every sample"
+        remedy = "list supply_pressure under ignore of this cycle: the supply of a run is constant"
+        yield Fault(("cycle",), message, remedy)
+    period = cycle.record.duration * cycle.time_scale
+    if scenario.duration < period * (1 - _SLACK):
+        message = f"{_time(scenario.duration)}: shorter than {cycle.name} ({_time(period)})"
+        remedy = f"write at least {_time(PERIODS * period)}, so that the last period is periodic"
+        yield Fault(("duration",), message, remedy)

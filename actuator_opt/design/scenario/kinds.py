@@ -495,6 +495,16 @@ class StartPosition(PositionKind):
         return position
 
 
+PublishedCase: TypeAlias = Annotated[
+    Literal["Exudyn2022", "ExudynPress", "FOSSEE788"] | None,
+    Choice(
+        "published or foreign case that this scenario repeats: its report compares the numbers of "
+        "the source with ours; "
+        "Exudyn2022: arm lifted by a cylinder, a test model of the multibody program EXUDYN; "
+        "ExudynPress: press ram, our circuit as computed by EXUDYN; "
+        "FOSSEE788: electrohydraulic servo, examples of a textbook of fluid power"
+    ),
+]
 Shape: TypeAlias = Annotated[str, choice_of("shape of this part of the signal", SHAPES)]
 Law: TypeAlias = Annotated[str, choice_of("law of the controller", LAWS)]
 Tuning: TypeAlias = Annotated[

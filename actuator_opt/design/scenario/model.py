@@ -9,7 +9,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from ..kinds import Boolean, FileName, Label, Of, Position, Section, Text
+from ..kinds import Boolean, CaseName, FileName, Label, Of, Position, Section, Text
 from ..model import Cushion, Limit
 from ..valve import Valve
 from . import kinds
@@ -164,7 +164,7 @@ class SupplyLine(Section):
     """A pipe between supply and valve."""
 
     length: Annotated[float, Of("part_length", "length of the pipe")]
-    inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
+    inner_diameter: Annotated[float, Of("line_diameter", "inner diameter")]
 
 
 class ValveSupply(Section):
@@ -348,6 +348,9 @@ class Controller(Section):
     pressure_time: Annotated[
         float, Of("time_constant", "time constant of the high-pass filter for pressure changes")
     ] = 0.05
+    feed_forward: Annotated[tuple[ValveSignal, ...], Field(max_length=100)] = ()
+    """Signal that is added to that of the controller; default with a duty cycle: the opening of the
+    valve that the cycle needs."""
     rate_limit: Annotated[float | None, Of("signal_rate", "rate limit of the signal")] = None
     dead_band_jump: Annotated[
         float | None,
@@ -376,9 +379,28 @@ class Scenario(Section):
 
     name: Annotated[str, Label("title of the scenario", "step response")]
     notes: Annotated[str, Text("free text for the report", 20000, multiline=True)] = ""
+    reproduces: kinds.PublishedCase = None
     design: Annotated[str, FileName("the design file, in the folder of the scenario", "knee.yaml")]
     set: dict[str, str] = {}  # noqa: RUF012 (pydantic copies it)
     """Values of the design that the scenario changes, by PATH."""
+    unset: Annotated[
+        tuple[
+            Annotated[
+                str,
+                Label("key or block of the design to remove, before any is set", "cushion"),
+            ],
+            ...,
+        ],
+        Field(max_length=100),
+    ] = ()
+    """PATHs of keys and blocks of the design; a removed key takes its default."""
+    cycle: Annotated[
+        str | None,
+        CaseName(
+            "duty cycle of the design that is simulated: its position over time is the reference, "
+            "its force the load, in place of load.mass and load.inertia",
+        ),
+    ] = None
     duration: Annotated[float, Of("duration", "simulated time")]
     sample_time: Annotated[
         float | None, Of("sample_time", "sample time of the signals; default: duration / 2000")

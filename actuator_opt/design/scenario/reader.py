@@ -18,13 +18,14 @@ from ...base.errors import Diagnostic, Fault, InputError
 from ...base.numeric import Array
 from ...base.quantities import RESULTS, Quantity
 from ...metrics import METRICS
+from .. import flow_tables
 from ..build import check
 from ..changes import Override
 from ..kinds import Of, Section, Text, ValueFault
 from ..model import Design
 from ..paths import resolve, stated
 from ..reader import STDIN, TEXT, FileSource, LoadedDesign, load, opened, read_design
-from ..structure import MaterialLookup, blocks, child_at, entries
+from ..structure import Loc, MaterialLookup, blocks, child_at, entries
 from ..writer import scalar
 from ..yaml_source import parse
 from .faults import cross_field, design_faults, part_lists
@@ -41,7 +42,7 @@ class LoadedScenario:
     folder: Path
     """Folder of the scenario file, to which names of other files are relative."""
     changes: tuple[Override, ...] = ()
-    """Values of the design that the scenario changes; those of the command line come last."""
+    """Changes of the design by the scenario, then by the command line."""
 
     @property
     def design_file(self) -> Path:
@@ -61,7 +62,7 @@ def read_scenario(source: str | Path, *, overrides: Iterable[Change] = ()) -> Lo
     source : path, ``"-"`` for standard input, or a text of several lines
     overrides : (PATH, value) pairs that replace values before all checks; a bare number is SI,
         None removes the key. PATHs that exist only in a design change the design, like those under
-        ``set``
+        ``set`` and ``unset``
 
     Raises
     ------
@@ -75,20 +76,26 @@ def read_scenario(source: str | Path, *, overrides: Iterable[Change] = ()) -> Lo
     for path, value in overrides:
         of_design = (_unset_in_design if value is None else _of_design)(path, document.data)
         (design_overrides if of_design else scenario_overrides).append((path, value))
-    scenario, place = load(document, Scenario, _build_scenario, scenario_overrides, RESULTS)
+
+    def build_scenario(tree: dict[str, Any]) -> tuple[Scenario | None, Sequence[Fault]]:
+        with_tables, unread = flow_tables.attached(tree, flow_tables.OF_SCENARIO, document)
+        if unread:
+            return None, unread
+        checked = check(with_tables, Scenario, RESULTS, cross_field)
+        return checked.section, checked.faults
+
+    scenario, place = load(document, Scenario, build_scenario, scenario_overrides, RESULTS)
+    stated_changes: list[tuple[str, str | None, Loc]] = [
+        *((path, None, ("unset", index)) for index, path in enumerate(scenario.unset)),
+        *((path, value, ("set", path)) for path, value in scenario.set.items()),
+    ]
     changes = []
-    for path, value in scenario.set.items():
-        loc = ("set", path)
+    for path, value, loc in stated_changes:
         origin = None if loc in place.overrides else document
         changes.append(Override(path, value, origin, () if origin is None else loc))
     changes += [Override(path, value) for path, value in design_overrides]
     folder = Path() if file in (TEXT, STDIN) else Path(source).parent
     return LoadedScenario(scenario, place, folder, tuple(changes))
-
-
-def _build_scenario(tree: dict[str, Any]) -> tuple[Scenario | None, Sequence[Fault]]:
-    checked = check(tree, Scenario, RESULTS, cross_field)
-    return checked.section, checked.faults
 
 
 def _of_design(path: str, tree: Any) -> bool:

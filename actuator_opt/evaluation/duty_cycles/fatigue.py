@@ -18,7 +18,7 @@ from ...models import endurance, rainflow
 from .numbers import LIFE, STRESS, History, Plan
 
 if TYPE_CHECKING:
-    from .results import Track
+    from .samples import Track
 
 
 MOST_KNOWN = 1000
@@ -31,7 +31,7 @@ class _Counted(NamedTuple):
     largest: Array
     smallest: Array
     count: Array
-    """How often each occurs in a life; 0 fills up the cycles of a load."""
+    """Number of times each occurs in a life; 0 fills up the cycles of a load."""
 
 
 class Fatigue:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import reduce
 
 from ...base.numeric import Array, maximum, minimum, real, where
 from ...design.model import Design
-from ...models import fluid
+from ...models import fluid, wear as models_wear
 from ..geometry import Geometry
 from ..limits import MaterialValues, MetricArrays
 from ..values import Values
 from . import supply, thermal
+from .numbers import smallest
 from .results import Place
 
 NO_DUTY = "no duty cycles stated: add duty"
@@ -38,6 +40,7 @@ NAMES = (
     "duty_fatigue",
     "duty_sliding",
     "duty_wear",
+    "duty_wear_share",
     "duty_pv",
     "duty_ripple_volume",
     "duty_gas_volume",
@@ -47,6 +50,8 @@ NAMES = (
 )
 """All metrics of duty cycles."""
 
+LEAST_SQUEEZE = 0.08
+"""Squeeze below which a round ring leaks (gland tables, see check 5.1)."""
 Extreme = Callable[[Array, Array], Array]
 
 
@@ -169,20 +174,56 @@ def _life(v: Values, design: Design, results: Mapping[Place, Array], out: Metric
         if cycle.repeats is not None
     }
     if not repeats:
-        for name in ("duty_fatigue", "duty_sliding", "duty_wear"):
+        for name in ("duty_fatigue", "duty_sliding", "duty_wear", "duty_wear_share"):
             out.skip(name, "no life stated: add duty.cycles[NAME].repeats")
         return
     way = _by_cycle(results, "way")
     out.put("duty_sliding", sum((count * way[name] for name, count in repeats.items()), 0.0))
+    _wear(v, results, repeats, out)
+
+
+def _wear(
+    v: Values, results: Mapping[Place, Array], repeats: Mapping[str, Array], out: MetricArrays
+) -> None:
+    """Worn depth of the seals in a life, and its share of the permitted depth."""
     wear: dict[str, Array] = {}
+    share: dict[str, Array] = {}
     for seal, severity in _severities(results, repeats):
-        path = f"duty.wear.{'piston' if seal.startswith('piston') else 'rod'}.rate"
-        if v.get(path, None) is not None:
-            wear[seal] = wear.get(seal, 0.0) + v[path] * severity
-    if wear:
-        out.put("duty_wear", wear)
-    else:
-        out.skip("duty_wear", "no measured wear rate stated: add duty.wear")
+        rate = v.get(f"duty.wear.{_block(seal)}.rate", None)
+        if rate is not None:
+            depth = models_wear.worn_depth(severity=severity, wear_rate=rate, repeats=1.0)
+            wear[seal] = wear.get(seal, 0.0) + depth
+    for seal, depth in wear.items():
+        allowed = v.get(f"duty.wear.{_block(seal)}.depth", None)
+        if allowed is None:
+            allowed = _squeezed(v, seal, out)
+        if allowed is not None:
+            share[seal] = models_wear.wear_share(depth=depth, allowed_depth=allowed)
+    for metric, values in (("duty_wear", wear), ("duty_wear_share", share)):
+        if values:
+            out.put(metric, values)
+        else:
+            out.skip(metric, "no measured wear rate stated: add duty.wear")
+    if wear and not share:
+        out.skip("duty_wear_share", "no permitted depth stated: add duty.wear.piston.depth")
+
+
+def _block(seal: str) -> str:
+    """Block of `seals` and of `duty.wear` of a seal."""
+    return "piston" if seal.startswith("piston") else "rod"
+
+
+def _squeezed(v: Values, seal: str, out: MetricArrays) -> Array | None:
+    """Depth that a round ring may lose until its squeeze is the least permitted; else None."""
+    squeezes = [
+        value
+        for place, value in out.metrics.get("seal_squeeze", {}).items()
+        if place == seal or place.startswith(f"{seal},")
+    ]
+    if not squeezes:
+        return None
+    least = reduce(minimum, squeezes)
+    return v[f"seals.{_block(seal)}.section"] * (smallest(least) - LEAST_SQUEEZE)
 
 
 def _severities(

@@ -19,7 +19,7 @@ from ...design.duty import DutyCycle
 from ...design.model import Design
 from ...joints.joint import Life
 from ...models import friction, lines, rod
-from ...models.lapped_spool import LappedSpool, lapped_flows
+from ...models.metering_spool import MeteringSpool, spool_flows
 from .. import circuit, piston_nut, rings as rings_module, rod_strength, sealing, spool
 from ..barrel import SEAL_STEP, Wall
 from ..geometry import Geometry
@@ -72,9 +72,10 @@ class FatiguePart:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What the model of the samples needs to know of a design besides numbers."""
+    """Structure of a design, for the model of the samples."""
 
-    linkage: bool
+    linked: frozenset[str]
+    """Cycles whose position and lever arm follow from the linkage."""
     valve: bool
     lines: tuple[tuple[str, int], ...]
     """Chamber and index of each line."""
@@ -106,7 +107,7 @@ def collect(
         "stroke": g.stroke,
         "closed_length": g.closed_length,
         "opening_limit": v["duty.opening_limit"],
-        "piston_leakage": _largest(leakage),
+        "piston_leakage": largest(leakage),
     }
     assert design.duty is not None
     for cycle in design.duty.cycles:
@@ -131,10 +132,15 @@ def collect(
     if design.lines:
         numbers["density"] = _flat(resting.density)
         numbers["dynamic_viscosity"] = _flat(resting.dynamic_viscosity)
-    seals = _seals(v, design, stock, g, resting, wall, supply, numbers)
+    seals = _seals(v, design, stock, g, resting, wall, sections, supply, numbers)
     parts, unknown = _fatigue(v, design, stock, g, wall, sections, loaded_joints, supply, numbers)
     lines = tuple((line.chamber, i) for i, line in enumerate(design.lines))
-    plan = Plan(design.linkage is not None, design.valve is not None, lines, seals, parts, unknown)
+    linked = frozenset(
+        cycle.name
+        for cycle in design.duty.cycles
+        if cycle.lever_arm is None and design.duty.record(cycle).joint
+    )
+    plan = Plan(linked, design.valve is not None, lines, seals, parts, unknown)
     return plan, numbers
 
 
@@ -146,7 +152,7 @@ def _cycle(
     joint = record.joint
     arm: Array = 1.0
     shift: Array = 0.0
-    if joint and design.linkage is None:
+    if joint and cycle.lever_arm is not None:
         arm = v[f"{at}lever_arm"]
         low, high = record.motion.min(), record.motion.max()
         shift = g.stroke / 2 - arm * (low + high) / 2
@@ -165,13 +171,18 @@ def _cycle(
     return {f"{name}|{key}": value for key, value in numbers.items()}
 
 
-def _largest(value: Array) -> Array:
+def largest(value: Array) -> Array:
     """Largest value over the load cases, (designs,)."""
     rows = np.atleast_2d(array_of(value))
     largest: Array = rows[0]
     for k in range(1, rows.shape[0]):
         largest = maximum(largest, rows[k])
     return largest
+
+
+def smallest(value: Array) -> Array:
+    """Smallest value over the load cases, (designs,)."""
+    return -largest(-value)
 
 
 def _flat(value: Array) -> Array:
@@ -206,7 +217,7 @@ def _edges(v: Values, design: Design, resting: LoadState) -> Numbers:
     A shut edge leaks q = G dp + K sqrt(dp), through its flows at half and at all of the pressure
     between supply and return.
     """
-    lapped = circuit.lapped_spool(v, design, resting)
+    lapped = circuit.metering_spool(v, design, resting)
     if lapped is None:
         edges = spool.course_edges(circuit.of_valve(v), viscosity=resting.kinematic_viscosity)
         numbers = {name: _flat(edges.rated) for name in EDGES}
@@ -218,7 +229,7 @@ def _edges(v: Values, design: Design, resting: LoadState) -> Numbers:
     return _lapped_edges(lapped, v["valve.signal"], v["supply.pressure"])
 
 
-def _lapped_edges(lapped: LappedSpool, signal: Array, supply: Array) -> Numbers:
+def _lapped_edges(lapped: MeteringSpool, signal: Array, supply: Array) -> Numbers:
     numbers: Numbers = {}
     half = 0.5 * supply
 
@@ -227,7 +238,7 @@ def _lapped_edges(lapped: LappedSpool, signal: Array, supply: Array) -> Numbers:
         return dict(
             zip(
                 ("feed_a", "feed_b", "drain_a", "drain_b"),
-                lapped_flows(
+                spool_flows(
                     spool=lapped,
                     signal=value,
                     supply_pressure=2 * drop,
@@ -259,13 +270,14 @@ def _seals(
     g: Geometry,
     resting: LoadState,
     wall: Wall,
+    sections: Sequence[RodSection],
     supply: Array,
     numbers: Numbers,
 ) -> tuple[Ring, ...]:
     """Friction and contact pressure of every sliding seal at the pressures `SHARES`."""
     seals = rings_module.rings(v, design, stock, g, resting, 0.0)
     growth = wall.growths.get("", next(iter(wall.growths.values())))
-    growth = _largest(growth)
+    growth = largest(growth)
     for i, ring in enumerate(seals):
         assert ring.name != "static"
         sealing_ring = ring.groove.path == f"seals.{BLOCKS[ring.name]}."  # others are not pressed
@@ -286,7 +298,7 @@ def _seals(
             numbers[f"seal{i}.contact[{share}]"] = _flat(contact.line_load / contact.width)
         for key in ("breakaway_ratio", "stribeck_speed", "viscous_friction"):
             numbers[f"seal{i}.{key}"] = _flat(ring[key])
-    others = sealing.wipers_and_guides(v, design, g, resting)
+    others = sealing.wipers_and_guides(v, design, g, resting, sections)
     numbers["other_friction"] = _flat(others.running)
     return seals
 

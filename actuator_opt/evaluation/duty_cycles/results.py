@@ -15,15 +15,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...base.dataclass import dataclass
-from ...base.numeric import STEP, Array
+from ...base.numeric import STEP, Array, over_time, over_travel
 from ...base.quantities import Sense
 from ...design.cycle_record import CycleRecord
-from ...models import supply_sizing
+from ...models import heat_transfer, supply_sizing, wear
 from ..values import Values
 from .fatigue import Fatigue
 from .numbers import CYCLE, Numbers, Plan
-from .samples import SampleModel, leakage_at_rest
+from .samples import SampleModel, Track, complexed, leakage_at_rest
 
 WINDOWS = 8
 """Windows of time of all cycles together (our choice). The extremes in each window are separate
@@ -82,44 +81,6 @@ def results_in(v: Values) -> dict[Place, Array]:
     }
 
 
-@dataclass(frozen=True)
-class Track:
-    """Results of all samples of a cycle, with slopes in every direction.
-
-    Arrays are (samples, columns): a column for each design, or for each direction of each design;
-    their imaginary parts are then the slopes times the complex step.
-    """
-
-    values: npt.NDArray[np.float64]
-    """(samples, outputs, designs, 1 + directions)"""
-    outputs: tuple[str, ...]
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Number of designs, and of columns of each."""
-        designs, width = self.values.shape[2:]
-        return designs, max(width - 1, 1)
-
-    def array(self, name: str) -> Array:
-        """A result at all samples (samples, columns)."""
-        part = complexed(self.values[:, self.outputs.index(name)])
-        return part.reshape(len(part), -1)
-
-    def real(self, name: str) -> npt.NDArray[np.float64]:
-        """A result at all samples, without slopes (samples, designs)."""
-        return self.values[:, self.outputs.index(name), :, 0]
-
-
-def complexed(part: Array) -> Array:
-    """Values and slopes (..., 1 + directions) as complex numbers (..., directions)."""
-    if part.shape[-1] == 1:
-        return part
-    result = np.empty((*part.shape[:-1], part.shape[-1] - 1), dtype=complex)
-    result.real = part[..., :1]
-    result.imag = STEP * part[..., 1:]
-    return result
-
-
 def _firsts(points: Array) -> npt.NDArray[np.intp]:
     """First columns of the groups with equal real parts."""
     new = np.append(True, (points.real[:, 1:] != points.real[:, :-1]).any(axis=0))
@@ -160,7 +121,7 @@ class CycleModels:
         lives = [cycle for cycle in records if f"{cycle}|repeats" in self._row]
         self._fatigue = Fatigue(plan, lives, self._row)
         count = max(LEAST_WINDOWS, WINDOWS // len(records))
-        self._models: dict[tuple[str, ...], SampleModel] = {}
+        self._models: dict[tuple[str | bool, ...], SampleModel] = {}
         self._cycles: dict[str, _Cycle] = {}
         places: list[Place] = []
         for name, record in records.items():
@@ -176,8 +137,9 @@ class CycleModels:
         if record.supply_pressure is not None:
             columns.append(record.supply_pressure)
             titles.append("=supply")
+        linked = name in self.plan.linked
         model = self._models.setdefault(
-            tuple(titles), SampleModel(self.plan, (*self.common, *CYCLE), titles)
+            (linked, *titles), SampleModel(self.plan, (*self.common, *CYCLE), titles, linked)
         )
         order = [self._row[key] for key in self.common]
         order += [self._row[f"{name}|{key}"] for key in CYCLE]
@@ -270,7 +232,7 @@ class _Cycle:
         self.keys: list[tuple[str, str]] = [*sums, *seals, *extremes, *ends, *pv]
         self._blocks = (
             _Block(SUMS, len(sums), self._sums),
-            _Block(tuple(SEAL_SUMS), len(seals), self._seal_sums),
+            _Block(SEAL_SUMS, len(seals), self._seal_sums),
             _Block(
                 tuple(self.extremes),
                 len(extremes),
@@ -288,8 +250,7 @@ class _Cycle:
 
     def track(self, values: Array, seeds: Array) -> Track:
         """Results of all samples."""
-        rows = self.model.run(values[self.order], seeds[self.order], self.data)
-        return Track(rows, self.model.outputs)
+        return self.model.run(values[self.order], seeds[self.order], self.data)
 
     def results(self, u: Numbers, track: Track) -> Array:
         """All results (keys, columns)."""
@@ -324,13 +285,12 @@ class _Cycle:
     def _seal_sums(self, u: Numbers, track: Track) -> Array:
         """Severity and friction energy of every seal."""
         x = track.array("position")
-        dx = x[1:] - x[:-1]
-        way = np.where(dx.real > 0, dx, -dx)
+        count = range(len(self.plan.rings))
         rows = [
-            (mean(track.array(f"{name}{i}")) * way).sum(axis=0)
-            for name in SEAL_SUMS.values()
-            for i in range(len(self.plan.rings))
+            wear.cycle_severity(contact_pressure=track.array(f"contact{i}"), position=x)
+            for i in count
         ]
+        rows += [over_travel(track.array(f"friction{i}"), x) for i in count]
         return np.stack(rows) if rows else np.empty((0, x.shape[1]))
 
     def _worst(
@@ -348,12 +308,12 @@ class _Cycle:
         """Largest contact pressure times speed of every seal, in windows."""
         blocks = []
         for i in range(len(self.plan.rings)):
-            value = np.abs(track.real("speed") * track.real(f"contact{i}"))
-            rows = self.windows.least(-value[:, None])[0]
+            product = wear.pressure_velocity(
+                contact_pressure=track.array(f"contact{i}"), speed=track.array("speed")
+            )
+            rows = self.windows.least(-product.real[:, None, :: track.shape[1]])[0]
             rows = np.repeat(rows, track.shape[1], axis=1)
-            speed = np.take_along_axis(track.array("speed"), rows, axis=0)
-            product = speed * np.take_along_axis(track.array(f"contact{i}"), rows, axis=0)
-            blocks.append(np.where(product.real < 0, -product, product))
+            blocks.append(np.take_along_axis(product, rows, axis=0))
         return np.concatenate(blocks) if blocks else np.empty((0, track.array("speed").shape[1]))
 
 
@@ -363,36 +323,33 @@ SUMS = (
     "inlet_heat", "inlet_volume", "ripple_volume", "flow_total", "exchange_a", "exchange_b",
 )  # fmt: skip
 """Sums over a cycle."""
-SEAL_SUMS = {"severity": "contact", "seal_friction_energy": "friction"}
-"""Sums over a cycle for each seal, with the result of the samples that is summed over the way."""
+SEAL_SUMS = ("severity", "seal_friction_energy")
+"""Sums over a cycle for each seal."""
 
 
 def sums_of(u: Numbers, time: Array, track: Track) -> dict[str, Array]:
     """Sums over the motion and over time."""
-    dt = time[1:] - time[:-1]
-    x = track.array("position")
+    x, supply = track.array("position"), track.array("supply")
+    leakage, force = track.array("leakage"), track.array("force")
     dx = x[1:] - x[:-1]
     outward = dx.real > 0
     way = np.where(outward, dx, -dx)
     areas = u["area_a"], u["area_b"]
     volume = np.where(outward, *areas) * way
-    returned = np.where(outward, *areas[::-1]) * way
-    work = mean(track.array("force")) * dx
-    supply = track.array("supply")
-    leakage = track.array("leakage")
-    duration = dt.sum(axis=0)
-    supplied = (mean(supply) * volume).sum(axis=0)
-    leaked = (mean(supply * leakage) * dt).sum(axis=0)
+    work = 0.5 * (force[1:] + force[:-1]) * dx
+    duration = over_time(np.ones_like(x[:, :1]), time)
+    supplied = _flowing(supply, volume)
+    leaked = over_time(supply * leakage, time)
     out = np.where(work.real > 0, work, 0.0).sum(axis=0)
     absorbed = -np.where(work.real < 0, work, 0.0).sum(axis=0)
-    rubbed = (mean(track.array("friction")) * way).sum(axis=0)
-    drained = (u["drain"] * returned).sum(axis=0)
+    rubbed = over_travel(track.array("friction"), x)
+    drained = u["drain"] * (np.where(outward, *areas[::-1]) * way).sum(axis=0)
     oil = u["area_a"] * x + u["area_b"] * (u["stroke"] - x)
-    leaked_volume = (mean(leakage) * dt).sum(axis=0)
+    filled = volume.sum(axis=0)
     sums = {
         "duration": duration,
-        "way": way.sum(axis=0),
-        "volume": volume.sum(axis=0) + leaked_volume,
+        "way": wear.sliding_distance(position=x),
+        "volume": filled + over_time(leakage, time),
         "supply_energy": supplied + leaked,
         "leakage_energy": leaked,
         "work_out": out,
@@ -400,17 +357,17 @@ def sums_of(u: Numbers, time: Array, track: Track) -> dict[str, Array]:
         "friction_energy": rubbed,
         "return_energy": drained,
         "throttling_energy": supplied - drained - (out - absorbed) - rubbed,
-        "oil_volume": (mean(oil) * dt).sum(axis=0) / duration,
-        "position_mean": (mean(x) * dt).sum(axis=0) / duration,
-        "inlet_heat": (mean(track.array("inlet_drop")) * volume).sum(axis=0),
-        "inlet_volume": volume.sum(axis=0),
+        "oil_volume": over_time(oil, time) / duration,
+        "position_mean": over_time(x, time) / duration,
+        "inlet_heat": _flowing(track.array("inlet_drop"), volume),
+        "inlet_volume": filled,
     }
     return sums | _exchange(u, x, duration, turning_points(track.real("position")[:, 0]))
 
 
-def mean(values: Array) -> Array:
-    """Means of neighbouring samples."""
-    return 0.5 * (values[1:] + values[:-1])
+def _flowing(values: Array, volume: Array) -> Array:
+    """Sum of mean values times the volumes of the intervals."""
+    return (0.5 * (values[1:] + values[:-1]) * volume).sum(axis=0)
 
 
 def turning_points(position: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
@@ -431,8 +388,13 @@ def _exchange(
     strokes = x[turns[1:]] - x[turns[:-1]]
     flows = {}
     for chamber, sign in (("a", 1.0), ("b", -1.0)):
-        fresh = sign * u[f"area_{chamber}"] * strokes - u[f"line_volume_{chamber}"]
-        flows[f"exchange_{chamber}"] = np.where(fresh.real > 0, fresh, 0.0).sum(axis=0) / duration
+        filling = np.where(sign * strokes.real > 0, sign * strokes, 0.0)
+        fresh = heat_transfer.exchanged_volume(
+            piston_area=u[f"area_{chamber}"],
+            travel=filling,
+            line_volume=u[f"line_volume_{chamber}"],
+        )
+        flows[f"exchange_{chamber}"] = fresh.sum(axis=0) / duration
     return flows
 
 

@@ -7,9 +7,10 @@ together; where the machine is missing, NumPy runs it with a complex step.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from ...base.dataclass import dataclass
 from ...base.numeric import STEP, Array, absolute, maximum, real, sqrt, where
@@ -21,7 +22,9 @@ PASSES = 2
 """Passes for friction, which depends on the pressures, and pressures, which depend on friction."""
 
 
-def sample(plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array]) -> dict[str, Array]:
+def sample(
+    plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array], *, linked: bool
+) -> dict[str, Array]:
     """Forces, pressures and flows at a sample; all arguments broadcast.
 
     Parameters
@@ -30,80 +33,126 @@ def sample(plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array]) -> dict[s
     u : numbers of the design and of the cycle, see `numbers.collect`
     s : "motion" (joint angle or position), "load" (torque or force), "rate" (slope of the motion by
         time), and "supply" if the cycle states the supply pressure of every sample
+    linked : whether the linkage gives position and lever arm
 
     Returns
     -------
     results by name, SI
     """
-    position, arm = _kinematics(plan, u, s)
-    force = u["load_scale"] * s["load"] / arm
-    speed = arm * s["rate"] / u["time_scale"]
+    position, arm = _kinematics(u, s, linked=linked)
+    move = _Move(plan, u, u["load_scale"] * s["load"] / arm, arm * s["rate"] / u["time_scale"])
     supply = s["supply"] if "supply" in s else u["level"]
-    extending = real(speed) >= 0
-    areas = u["area_a"], u["area_b"]
-    driven, other = where(extending, *areas), where(extending, *areas[::-1])
-    pressures = {"supply_pressure": supply, "return_pressure": u["drain"]}
-    chambers = {"driven_area": driven, "other_area": other}
-    feed: Array = 1.0
-    drain: Array = 1.0
-    if plan.valve:
-        feed = where(extending, u["feed_a"], u["feed_b"])
-        drain = where(extending, u["drain_b"], u["drain_a"])
-    ratio = quasi_static.edge_ratio(**chambers, feed_coefficient=feed, drain_coefficient=drain)
-    line_a, line_b = _line_drops(plan, u, speed)
-    outward = where(extending, force, -force) + u["area_a"] * line_a + u["area_b"] * line_b
-    driven_line, other_line = where(extending, line_a, line_b), where(extending, line_b, line_a)
-    frictions: list[Array] = []
-    friction: Array = 0.0 * force
-    for _ in range(1 + PASSES):
-        state = quasi_static.driven_pressures(
-            load=outward + friction, ratio=ratio, **pressures, **chambers
-        )
-        into, out = state.driven - driven_line, state.other + other_line
-        a, b = where(extending, into, out), where(extending, out, into)
-        frictions = [_friction(plan, u, i, a, b, speed) for i in range(len(plan.rings))]
-        friction = sum(frictions, u["other_friction"])
+    balance = _balanced(plan, u, move, supply)
+    driven = move.chambers["driven_area"]
     needed = quasi_static.needed_supply(
-        load=outward + friction,
-        speed=speed if plan.valve else 0.0 * speed,
+        load=move.against + sum(balance.frictions, u["other_friction"]),
+        speed=move.speed if plan.valve else 0.0 * move.speed,
         return_pressure=u["drain"],
-        ratio=ratio,
-        feed_coefficient=feed,
+        ratio=move.ratio,
+        feed_coefficient=move.feed,
         opening=u["opening_limit"],
-        **chambers,
+        **move.chambers,
     )
-    leak = _leakage(plan, u, extending, supply, a, b)
+    a, b = balance.a, balance.b
+    leak = _leakage(plan, u, move.extending, supply, a, b)
     results = {
         "position": position,
         "arm": arm,
-        "force": force,
-        "speed": speed,
+        "force": move.force,
+        "speed": move.speed,
         "supply": supply,
         "pressure_a": a,
         "pressure_b": b,
-        "friction": friction,
+        "friction": sum(balance.frictions, u["other_friction"]),
         "needed": needed,
         "share": needed / supply,
         "reserve": (supply - needed) * driven,
         "leakage": leak,
-        "flow": driven * absolute(speed) + leak,
-        "power": force * speed,
-        "inlet_drop": supply - into,
+        "flow": driven * absolute(move.speed) + leak,
+        "power": move.force * move.speed,
+        "inlet_drop": supply - where(move.extending, a, b),
     }
     if plan.valve:
-        moves = real(state.edge_drop) > 0
-        drop = where(moves, state.edge_drop, 1.0)
-        limit = quasi_static.speed_limit(edge_drop=drop, driven_area=driven, feed_coefficient=feed)
-        results["opening"] = where(moves, absolute(speed) / limit, np.inf)
-    for i, part in enumerate(frictions):
+        results["opening"] = _opening(move, balance.edge_drop)
+    for i, part in enumerate(balance.frictions):
         results[f"friction{i}"] = part
         results[f"contact{i}"] = _between(u, f"seal{i}.contact", _sealed(plan, i, a, b))
     return results
 
 
-def _kinematics(plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array]) -> tuple[Array, Array]:
+class _Move:
+    """A motion with its load: direction, chambers, edges, and force against the motion."""
+
+    def __init__(self, plan: Plan, u: Mapping[str, Array], force: Array, speed: Array) -> None:
+        self.force, self.speed = force, speed
+        self.extending = real(speed) >= 0
+        areas = u["area_a"], u["area_b"]
+        self.chambers = {
+            "driven_area": where(self.extending, *areas),
+            "other_area": where(self.extending, *areas[::-1]),
+        }
+        self.feed: Array = 1.0
+        drain: Array = 1.0
+        if plan.valve:
+            self.feed = where(self.extending, u["feed_a"], u["feed_b"])
+            drain = where(self.extending, u["drain_b"], u["drain_a"])
+        self.ratio = quasi_static.edge_ratio(
+            **self.chambers, feed_coefficient=self.feed, drain_coefficient=drain
+        )
+        self.line_a, self.line_b = _line_drops(plan, u, speed)
+        self.against = (
+            where(self.extending, force, -force)
+            + u["area_a"] * self.line_a
+            + u["area_b"] * self.line_b
+        )
+        """Force of load and lines against the motion, without friction [N]."""
+
+
+class _Balance(NamedTuple):
+    """Chamber pressures, drop of the feeding edge, and friction of each seal."""
+
+    a: Array
+    b: Array
+    edge_drop: Array
+    frictions: list[Array]
+
+
+def _balanced(plan: Plan, u: Mapping[str, Array], move: _Move, supply: Array) -> _Balance:
+    """Pressures and friction, which depend on each other."""
+    lines = where(move.extending, move.line_a, move.line_b)
+    others = where(move.extending, move.line_b, move.line_a)
+    friction: Array = 0.0 * move.force
+    for _ in range(1 + PASSES):
+        state = quasi_static.driven_pressures(
+            load=move.against + friction,
+            supply_pressure=supply,
+            return_pressure=u["drain"],
+            ratio=move.ratio,
+            **move.chambers,
+        )
+        into, out = state.driven - lines, state.other + others
+        a, b = where(move.extending, into, out), where(move.extending, out, into)
+        frictions = [_friction(plan, u, i, a, b, move.speed) for i in range(len(plan.rings))]
+        friction = sum(frictions, u["other_friction"])
+    return _Balance(a, b, state.edge_drop, frictions)
+
+
+def _opening(move: _Move, edge_drop: Array) -> Array:
+    """Opening of the valve as a share of its stroke; infinite past stall."""
+    moves = real(edge_drop) > 0
+    limit = quasi_static.speed_limit(
+        edge_drop=where(moves, edge_drop, 1.0),
+        driven_area=move.chambers["driven_area"],
+        feed_coefficient=move.feed,
+    )
+    return where(moves, absolute(move.speed) / limit, np.inf)
+
+
+def _kinematics(
+    u: Mapping[str, Array], s: Mapping[str, Array], *, linked: bool
+) -> tuple[Array, Array]:
     """Piston position and lever arm; the arm is 1 for a cycle of position and force."""
-    if plan.linkage:
+    if linked:
         at = linkage.linkage(
             base_radius=u["base_radius"],
             crank_radius=u["crank_radius"],
@@ -154,13 +203,12 @@ def _between(u: Mapping[str, Array], name: str, pressure: Array) -> Array:
 def _friction(
     plan: Plan, u: Mapping[str, Array], i: int, a: Array, b: Array, speed: Array
 ) -> Array:
-    """Friction of a seal against the motion; at rest its Coulomb friction."""
+    """Friction of a seal against the motion; at rest it must break away."""
     coulomb = _between(u, f"seal{i}.coulomb", _sealed(plan, i, a, b))
     fast = absolute(speed)
     law = plan.rings[i].element.friction_law
     seal: Any = _Seal(u, i)
-    running = law.level(seal, coulomb, fast) + u[f"seal{i}.viscous_friction"] * fast
-    return where(real(fast) > 0, running, coulomb)
+    return law.level(seal, coulomb, fast) + u[f"seal{i}.viscous_friction"] * fast
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,6 +256,44 @@ def leakage_at_rest(plan: Plan, u: Mapping[str, Array]) -> Array:
 FEEDS = ("feed_a", "feed_b")
 
 
+@dataclass(frozen=True)
+class Track:
+    """Results of all samples of a cycle, with slopes in every direction.
+
+    Arrays are (samples, columns): a column for each design, or for each direction of each design;
+    their imaginary parts are then the slopes times the complex step.
+    """
+
+    values: npt.NDArray[np.float64]
+    """(samples, outputs, designs, 1 + directions)"""
+    outputs: tuple[str, ...]
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of designs, and of columns of each."""
+        designs, width = self.values.shape[2:]
+        return designs, max(width - 1, 1)
+
+    def array(self, name: str) -> Array:
+        """A result at all samples (samples, columns)."""
+        part = complexed(self.values[:, self.outputs.index(name)])
+        return part.reshape(len(part), -1)
+
+    def real(self, name: str) -> npt.NDArray[np.float64]:
+        """A result at all samples, without slopes (samples, designs)."""
+        return self.values[:, self.outputs.index(name), :, 0]
+
+
+def complexed(part: Array) -> Array:
+    """Values and slopes (..., 1 + directions) as complex numbers (..., directions)."""
+    if part.shape[-1] == 1:
+        return part
+    result = np.empty((*part.shape[:-1], part.shape[-1] - 1), dtype=complex)
+    result.real = part[..., :1]
+    result.imag = STEP * part[..., 1:]
+    return result
+
+
 class SampleModel:
     """The model of the samples of a design, as a function of numbers and columns of data.
 
@@ -216,10 +302,14 @@ class SampleModel:
     plan : structure of the design
     names : names of the numbers, in the order of their arrays
     columns : names of the columns of a record
+    linked : whether the linkage gives position and lever arm
     """
 
-    def __init__(self, plan: Plan, names: Sequence[str], columns: Sequence[str]) -> None:
+    def __init__(
+        self, plan: Plan, names: Sequence[str], columns: Sequence[str], linked: bool
+    ) -> None:
         self.plan, self.names, self.columns = plan, tuple(names), tuple(columns)
+        self.linked = linked
         self.outputs: tuple[str, ...] = ()
         self._recorded: RecordedFunction | None = None
 
@@ -229,6 +319,7 @@ class SampleModel:
             self.plan,
             {name: values[name] for name in self.names},
             {name[1:]: values[name] for name in self.columns},
+            linked=self.linked,
         )
         self.outputs = tuple(results)
         first = points[0]
@@ -236,8 +327,8 @@ class SampleModel:
         rows = [xp.broadcast_to(xp.asarray(row), first.shape) for row in results.values()]
         return xp.stack(rows)
 
-    def run(self, numbers: Array, seeds: Array, data: Array) -> Array:
-        """Results (samples, outputs, designs, 1 + directions): values, then slopes.
+    def run(self, numbers: Array, seeds: Array, data: Array) -> Track:
+        """Results of all samples.
 
         Parameters
         ----------
@@ -269,7 +360,8 @@ class SampleModel:
             results = results[:, : recording.rows]
             for k in np.flatnonzero(outside):
                 results[k] = self._by_numpy(points[k : k + 1], changes[k // count, None])[0]
-        return results.reshape(designs, count, -1, 1 + directions).transpose(1, 2, 0, 3)
+        results = results.reshape(designs, count, -1, 1 + directions).transpose(1, 2, 0, 3)
+        return Track(results, self.outputs)
 
     def _by_numpy(self, points: Array, changes: Array) -> Array:
         """Results (points, outputs, 1 + directions); changes (designs, inputs, directions)."""

@@ -11,7 +11,10 @@ import numpy.typing as npt
 from ...base.dataclass import dataclass
 from ...design.cycle_record import CycleRecord
 from ..values import plain
-from .results import CycleModels, Place, Track
+from .force_speed import ForceLimit, force_limits
+from .numbers import CYCLE
+from .results import CycleModels, Place
+from .samples import Track
 
 Trace = npt.NDArray[np.float64]
 
@@ -24,6 +27,12 @@ ENERGIES: Mapping[str, str] = {
     "return_energy": "return line",
 }
 """Parts of the energy from the supply; it is their sum, with the work of the load subtracted."""
+
+
+STATE = (
+    "position", "arm", "force", "speed", "supply", "pressure_a", "pressure_b", "opening", "flow",
+)  # fmt: skip
+"""Traces that describe the actuator at a sample."""
 
 
 class WorstSample(NamedTuple):
@@ -55,9 +64,34 @@ class CycleStudy:
     severity: Mapping[str, float]
     """Contact pressure times way of every seal per cycle [N/m]."""
     repeats: float | None
+    flow_mean: float = 0.0
+    """Mean flow from the supply [m^3/s]."""
+    way: float = 0.0
+    """Distance that the piston moves per cycle [m]."""
+    limits: tuple[ForceLimit, ...] = ()
+    """Limits in the plane of force and speed, at the least supply pressure of the cycle."""
+    linked: bool = False
+    """Whether the linkage gives position and lever arm."""
+
+    @property
+    def efficiency(self) -> float | None:
+        """Work on the load divided by the energy from the supply; None if nothing moves."""
+        supplied = self.energies["supply_energy"]
+        return self.energies["work_out"] / supplied if self.way > 0 and supplied > 0 else None
+
+    def state(self, index: int) -> dict[str, float]:
+        """Angle and torque of the joint if there is one, and traces at a sample, by name."""
+        values: dict[str, float] = {}
+        if self.record.joint:
+            torque = self.traces["force"][index] * self.traces["arm"][index]
+            angle = float(self.record.motion[index])
+            values = {"joint_angle": angle, "joint_torque": float(torque)}
+        return values | {
+            name: float(self.traces[name][index]) for name in STATE if name in self.traces
+        }
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON data: sums and worst samples, without traces."""
+        """JSON data: sums, worst samples with the state there, and limits; without traces."""
         data: dict[str, Any] = plain(
             {
                 "name": self.name,
@@ -65,13 +99,33 @@ class CycleStudy:
                 "samples": len(self.time),
                 "reversals": self.record.reversals,
                 "energies": self.energies,
-                "worst": {key: sample._asdict() for key, sample in self.worst.items()},
+                "efficiency": self.efficiency,
+                "flow_mean": self.flow_mean,
+                "way": self.way,
+                "worst": {
+                    key: worst._asdict() | {"state": self.state(worst.sample)}
+                    for key, worst in self.worst.items()
+                },
+                "force_limits": [limit.to_dict() for limit in self.limits],
                 "damage": self.damage,
                 "severity": self.severity,
                 "warnings": [*self.record.notes, *self.record.warnings],
             }
         )
         return data
+
+
+class LinkageSize(NamedTuple):
+    """Lengths and angle of a linkage, as in `models.linkage`, and of the actuator in it."""
+
+    base_radius: float
+    """Joint axis to the fixed pivot [m]."""
+    crank_radius: float
+    """Joint axis to the crank pin [m]."""
+    angle_offset: float
+    """Angle between both radii at joint angle zero [rad]."""
+    closed_length: float
+    """Retracted actuator, pin to pin [m]."""
 
 
 @dataclass(frozen=True)
@@ -82,12 +136,22 @@ class DutyStudy:
     unknown: Mapping[str, str]
     """Parts that are not assessed for fatigue, with the reason."""
     notes: tuple[str, ...]
-    """What the results assume."""
+    """Assumptions behind the results."""
+    return_pressure: float = 0.0
+    """Gauge pressure of the return line [Pa]."""
+    stroke: float = 0.0
+    """Stroke of the cylinder [m]."""
+    opening_limit: float | None = None
+    """Largest opening of the valve that a cycle may need; None without a valve."""
+    linkage: LinkageSize | None = None
+    """Lengths of the linkage; None if no cycle moves it."""
 
     def to_dict(self) -> dict[str, Any]:
         """JSON data."""
         return {
             "cycles": [cycle.to_dict() for cycle in self.cycles],
+            "opening_limit": self.opening_limit,
+            "linkage": None if self.linkage is None else self.linkage._asdict(),
             "not_assessed_for_fatigue": dict(self.unknown),
             "notes": list(self.notes),
         }
@@ -99,7 +163,7 @@ NOTES = (
     "the torques or forces of a cycle contain the inertia of the load: load.mass and load.inertia "
     "are not added",
 )
-"""What all duty cycles assume."""
+"""Assumptions of all duty cycles."""
 
 _WORST: Mapping[str, tuple[str, float]] = {
     "share": ("share", -1.0),
@@ -127,8 +191,26 @@ def study(
     for name, track in models.tracks(numbers[:, None]).items():
         record = models.records[name]
         time = record.time * named[f"{name}|time_scale"]
-        cycles.append(_cycle(name, record, time, track, results, named.get(f"{name}|repeats")))
-    return DutyStudy(tuple(cycles), dict(models.plan.unknown), (*NOTES, *notes))
+        u = {key: named[key] for key in models.common}
+        u |= {key: named[f"{name}|{key}"] for key in CYCLE}
+        u["level"] = float(track.real("supply").min())
+        limits = force_limits(models.plan, u, track.real("speed")[:, 0])
+        repeats = named.get(f"{name}|repeats")
+        cycles.append(
+            _cycle(name, record, time, track, results, limits, repeats, name in models.plan.linked)
+        )
+    linkage = None
+    if models.plan.linked:
+        linkage = LinkageSize(**{key: named[key] for key in LinkageSize._fields})
+    return DutyStudy(
+        cycles=tuple(cycles),
+        unknown=dict(models.plan.unknown),
+        notes=(*NOTES, *notes),
+        return_pressure=named["drain"],
+        stroke=named["stroke"],
+        opening_limit=named["opening_limit"] if models.plan.valve else None,
+        linkage=linkage,
+    )
 
 
 def _cycle(
@@ -137,7 +219,9 @@ def _cycle(
     time: Trace,
     track: Track,
     results: Mapping[Place, float],
+    limits: tuple[ForceLimit, ...],
     repeats: float | None,
+    linked: bool,
 ) -> CycleStudy:
     own = {place: value for place, value in results.items() if place.cycle == name}
 
@@ -156,8 +240,12 @@ def _cycle(
         time=time,
         traces=traces,
         energies={key: own[Place(name, key)] for key in ("supply_energy", *ENERGIES)},
+        flow_mean=own[Place(name, "volume")] / own[Place(name, "duration")],
+        way=own[Place(name, "way")],
+        limits=limits,
         worst=worst,
         damage=by_place("damage"),
         severity=by_place("severity"),
         repeats=repeats,
+        linked=linked,
     )

@@ -108,9 +108,10 @@ def _missing(design: Design, stock: MaterialValues) -> list[str]:
         (design.fluid.material, ("thermal_conductivity", "specific_heat"))
     ]
     for ply in design.barrel.layup:
-        keys = ("thermal_conductivity_through", "thermal_conductivity")
-        needed += [(ply.material, keys[:1] if _laminated(stock, ply.material) else keys[1:])]
-        needed += [(ply.material, ("specific_heat",))]
+        keys = stock.material(ply.material).through_wall
+        if stock.get(ply.material, *keys) is None:
+            needed.append((ply.material, keys[:1]))
+        needed.append((ply.material, ("specific_heat",)))
     rod = design.rod.layup[0].material if design.rod.layup else design.rod.material
     needed.append((rod, ("specific_heat",)))
     return [
@@ -119,10 +120,6 @@ def _missing(design: Design, stock: MaterialValues) -> list[str]:
         for key in keys
         if stock.get(material, key) is None
     ]
-
-
-def _laminated(stock: MaterialValues, material: str) -> bool:
-    return not stock.material(material).isotropic
 
 
 def _each(
@@ -208,12 +205,10 @@ def _steady(
     )
     layers = []
     for k, (ply, thickness) in enumerate(zip(design.barrel.layup, g.thicknesses, strict=True)):
-        key = "thermal_conductivity"
-        key += "_through" if _laminated(stock, ply.material) else ""
         layers.append(
             ThermalLayer(
                 thickness=thickness,
-                conductivity=stock.get(ply.material, key),
+                conductivity=stock.get(ply.material, *stock.material(ply.material).through_wall),
                 volumetric_heat=stock.get(ply.material, "density")
                 * stock.get(ply.material, "specific_heat"),
                 heat=friction.layer + friction.head if k == 0 else 0.0,

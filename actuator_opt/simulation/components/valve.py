@@ -13,8 +13,8 @@ from ...base.dataclass import dataclass
 from ...base.numeric import clip, where
 from ...base.quantities import SCENARIOS
 from ...base.symbolic import Expression
-from ...models import valve
-from ...models.lapped_spool import lapped_flows
+from ...models import play, valve
+from ...models.metering_spool import spool_flows
 from ...models.valve import limited_spool_acceleration, spool_acceleration
 from ...studies.plant import ValveData
 from .circuit import Circuit
@@ -43,7 +43,7 @@ def spool(circuit: Circuit, data: ValveData, command: Expression, prefix: str = 
     limited = clip(command, -data.signal, data.signal)
     system.rate(opening, speed)
     law = {
-        "command": limited,
+        "command": _played(circuit, data, limited, prefix),
         "opening": opening,
         "rate": speed,
         "natural_frequency": data.natural_frequency,
@@ -58,6 +58,29 @@ def spool(circuit: Circuit, data: ValveData, command: Expression, prefix: str = 
     system.signal(f"{prefix}signal", f"signal of the valve{of}", volts, limited)
     system.signal(f"{prefix}spool", f"position of the spool{of}", volts, opening)
     return opening
+
+
+def _played(circuit: Circuit, data: ValveData, command: Expression, prefix: str) -> Expression:
+    """Signal that drives the spool: mean of the plays; a linear model leaves them out."""
+    if circuit.linear or not data.plays:
+        return command
+    if circuit.loop is not None and not prefix:
+        circuit.system.notes.append(
+            "margins and tuned gains of the loop leave out hysteresis and threshold of the valve; "
+            "the simulation includes them"
+        )
+    total: Expression = 0.0
+    for number, half_width in enumerate(data.plays, 1):
+        output = circuit.system.state(f"{prefix}valve play {number}", 0.0, tolerance=SPOOL)
+        rate = play.play_rate(
+            command=command,
+            output=output,
+            half_width=half_width,
+            natural_frequency=data.natural_frequency,
+        )
+        circuit.system.rate(output, rate)
+        total = total + output
+    return total / len(data.plays)
 
 
 def edges(
@@ -82,8 +105,8 @@ def edges(
         "pressure_a": pressure_a,
         "pressure_b": pressure_b,
     }
-    if data.lapped is not None:
-        flows = lapped_flows(spool=data.lapped, signal=opening - offset, **port_pressures)
+    if data.metering is not None:
+        flows = spool_flows(spool=data.metering, signal=opening - offset, **port_pressures)
     else:
         flows = valve.valve_flows(
             signal=opening - offset,
@@ -181,6 +204,8 @@ def command(
         factor = control.derivative_factor * proportional_gain
         derivative_time = circuit.value("control.derivative_time", gains.derivative_time)
         valve_signal = valve_signal + factor * derivative_time * change
+    if control.feed_forward:
+        valve_signal = valve_signal + circuit.scenario_signal(control.feed_forward)
     valve_signal = inner(circuit, valve_signal, measured)
     if gains.integral_time < inf:
         integral = system.state("integral part", 0.0, tolerance=1e-7 * full_signal)

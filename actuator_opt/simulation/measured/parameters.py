@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from ...base.dataclass import dataclass
 from ...base.errors import Diagnostic, InputError, remedy, shown
 from ...base.quantities import INPUTS, MATERIAL_PROPERTIES, RECORDS, SCENARIOS, Quantity
 from ...design.scenario.model import ForceSignal, Scenario
 from ...evaluation.spool import EDGES
+from ...models.lapped_spool import LappedSpool
 from ...studies.plant import LEAST_AIR, Plane, Plant, ValveData
 from ..assemble import ends_of, start_of
 from ..components.chambers import LEAST_DEAD
@@ -90,8 +91,8 @@ def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
         if not on_bench and not motor and ends_of(scenario, plant) != "valve":
             return "the lines do not end at a valve"
         leaks = plant.valve.leakage_supply or plant.valve.leakage_tank
-        if name == "valve_leakage" and plant.valve.lapped is not None:
-            return "the clearance of a lapped spool gives its leakage; fit valve_capacity"
+        if name == "valve_leakage" and plant.valve.metering is not None:
+            return "the edges of the spool give its leakage; fit valve_capacity"
         if name == "valve_leakage" and not leaks:
             return "it multiplies the leakage of the design's valve, which is zero"
         return None
@@ -169,14 +170,16 @@ def _capacity(scenario: Scenario, plant: Plant) -> FitParameter:
 
 def _wider(valve: ValveData, factor: float) -> ValveData:
     """The valve with edges that pass a multiple of their flow."""
-    if valve.lapped is None:
+    spool: Any = valve.metering
+    if spool is None:
         return replace(valve, rated=factor * valve.rated)
+    size = "area_gradient" if isinstance(spool, LappedSpool) else "factor"
     edges = {
-        name: replace(edge, area_gradient=factor * edge.area_gradient)
+        name: replace(edge, **{size: factor * getattr(edge, size)})
         for name in EDGES
-        for edge in (getattr(valve.lapped, name),)
+        for edge in (getattr(spool, name),)
     }
-    return replace(valve, lapped=replace(valve.lapped, **edges))
+    return replace(valve, metering=replace(spool, **edges))
 
 
 def _valve_leakage(scenario: Scenario, plant: Plant) -> FitParameter:

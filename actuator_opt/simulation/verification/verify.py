@@ -133,6 +133,8 @@ class LinearTier:
         )
         if actuator.valve is None:
             return stand
+        valve = replace(actuator.valve, plays=())  # as in the linear model
+        stand = stand.with_changes(plant=replace(actuator, valve=valve))
         gain = self._gain(spot.case)
         both = [self.figures(spot.case, spot.position, extending) for extending in (True, False)]
         least = min(figures.ultimate_gain for figures in both)
@@ -455,11 +457,17 @@ def verify(
         result,
         counter.runs,
         perf_counter() - begin,
-        _notes(scenario, bool(requirements)),
+        _notes(scenario, bool(requirements), _has_hysteresis(subject)),
     )
 
 
-def _notes(scenario: Scenario, any_requirement: bool) -> tuple[str, ...]:
+def _has_hysteresis(subject: PreparedDesign) -> bool:
+    """Whether the design's valve states hysteresis or threshold."""
+    valve = subject.design.valve
+    return valve is not None and bool(valve.hysteresis or valve.threshold)
+
+
+def _notes(scenario: Scenario, any_requirement: bool, hysteresis: bool) -> tuple[str, ...]:
     if not any_requirement:
         return ("the design has no dynamic requirement",)
     notes = [
@@ -467,6 +475,8 @@ def _notes(scenario: Scenario, any_requirement: bool) -> tuple[str, ...]:
         "value"
     ]
     control = scenario.control
+    if hysteresis:
+        notes.append("hysteresis and threshold of the valve are left out, as in the linear model")
     own_controller = control is not None and (
         loop_of(control) != "position"
         or control.law != "p"

@@ -29,7 +29,7 @@ _MISREAD = (("Âµ", "µ"), ("Î¼", "µ"), ("Â°", "°"), ("Â²", "²"), ("Â
 """UTF-8 characters as they look if a program has read them as Latin-1, each with its correction."""
 
 
-def decode_record(data: bytes, name: str, *, most: int | None = None) -> str:
+def decode_sheet(data: bytes, name: str, *, most: int | None = None) -> str:
     """Text of a file's bytes: UTF-8, UTF-16 with a byte order mark, else Windows-1252.
 
     Parameters
@@ -82,8 +82,14 @@ class Sheet:
     width: int
 
 
-def read_sheet(text: str, name: str) -> Sheet:
+def read_sheet(text: str, name: str, *, what: str = "record") -> Sheet:
     """Find the heading, the units and the first line of samples in a CSV file.
+
+    Parameters
+    ----------
+    text : text of the file
+    name : name of the file, for messages
+    what : content of the file in a word, for messages
 
     Raises
     ------
@@ -95,13 +101,13 @@ def read_sheet(text: str, name: str) -> Sheet:
     if strange is not None:
         line = text.count("\n", 0, strange.start()) + 1
         message = f"not text: byte 0x{ord(strange[0]):02x}"
-        raise InputError(Diagnostic(message, "export the record as CSV", file=name, line=line))
+        raise InputError(Diagnostic(message, f"export the {what} as CSV", file=name, line=line))
     for wrong, right in _MISREAD:
         text = text.replace(wrong, right)
     lines = text.split("\n")
     at = _next(lines, 0)
     if at == len(lines):
-        raise InputError(Diagnostic("the record is empty", "give a CSV file", file=name))
+        raise InputError(Diagnostic(f"the {what} is empty", "give a CSV file", file=name))
     header, below = lines[at], at + 1
     if is_number(_cells(header, _separator(header, header))[0]):
         at, header, below = _commented(lines, at, name)

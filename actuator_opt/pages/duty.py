@@ -1,0 +1,396 @@
+"""Duty cycles in a report: overview, fatigue, where margins are least, and the traces as CSV."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import TypeAlias
+
+import numpy as np
+
+from ..base.dataclass import dataclass
+from ..base.quantities import Quantity, Sense
+from ..evaluation.duty_cycles.study import CycleStudy, DutyStudy
+from ..evaluation.result import Evaluation
+from ..metrics import METRICS
+from ..rendering.axes import per_cent
+from ..rendering.blocks import (
+    Block,
+    Cell,
+    Column,
+    Notes,
+    Row,
+    Share,
+    State,
+    Table,
+    clean,
+    soft,
+)
+from ..rendering.series import Series, heading
+from ..rendering.text import DASH, limit_text, number, trimmed, value_text
+from .duty_figures import (
+    ANGLE,
+    ARM,
+    DAMAGE,
+    ENERGY,
+    FLOW,
+    FORCE,
+    LENGTH,
+    OPENING,
+    POWER,
+    PRESSURE,
+    SPEED,
+    TORQUE,
+    balance_of,
+    efficiency_of,
+    figure,
+    time_of,
+    trace_of,
+    value_of,
+)
+
+MOST_SHEETS = 6
+"""Largest number of cycles with a figure of their own: those that need most of their supply."""
+FEWEST_PARTS, MOST_PARTS = 3, 10
+"""Least and largest number of parts in the table of fatigue; between them, only parts whose bar is
+not empty are listed."""
+MOST_ON_CARD = 3
+"""Largest number of cycles on the card."""
+LEAST_DAMAGE = 1e-9
+"""Damage at which the logarithmic bar is empty (our choice)."""
+_COLUMNS: tuple[tuple[str, str, Quantity], ...] = (
+    ("joint_angle", "angle", ANGLE),
+    ("joint_torque", "torque", TORQUE),
+    ("lever_arm", "arm", ARM),
+    ("position", "position", LENGTH),
+    ("force", "force", FORCE),
+    ("speed", "speed", SPEED),
+    ("power", "power", POWER),
+    ("supply_pressure", "supply", PRESSURE),
+    ("pressure_a", "pressure_a", PRESSURE),
+    ("pressure_b", "pressure_b", PRESSURE),
+    ("friction", "friction", FORCE),
+    ("supply_pressure_needed", "needed", PRESSURE),
+    ("force_reserve", "reserve", FORCE),
+    ("valve_opening", "opening", OPENING),
+    ("leakage", "leakage", FLOW),
+    ("supply_flow", "flow", FLOW),
+)
+"""Columns of the CSV file: name, trace and quantity."""
+
+
+def duty_blocks(evaluation: Evaluation) -> list[Block]:
+    """All blocks on the duty cycles; empty if the design states none."""
+    study = evaluation.duty
+    if study is None:
+        return []
+    blocks: list[Block] = [_overview(study), *_fatigue(evaluation, study), _basis(study)]
+    for cycle in _shown(study):
+        blocks += [figure(evaluation.lengths, study, cycle), _margins(evaluation, study, cycle)]
+        blocks.append(_energies(cycle))
+    return blocks
+
+
+def series(evaluation: Evaluation) -> list[Series]:
+    """Traces of all cycles, one below the other; empty without duty cycles.
+
+    A column that no cycle has is left out.
+    """
+    cycles = () if evaluation.duty is None else evaluation.duty.cycles
+    if not cycles:
+        return []
+    names = [cycle.name for cycle in cycles for _ in cycle.time]
+    columns = [Series("cycle", names)]
+    columns.append(Series("time [s]", np.concatenate([c.time for c in cycles]).tolist(), 9))
+    named = [(name, trace, quantity) for name, trace, quantity in _COLUMNS]
+    for i, seal in enumerate(next((c.severity for c in cycles), {})):
+        named.append((f"contact_pressure of the {seal}", f"contact{i}", PRESSURE))
+    for name, trace, quantity in named:
+        parts = [trace_of(cycle, trace) for cycle in cycles]
+        if all(part is None for part in parts):
+            continue
+        values = np.concatenate(
+            [
+                np.full(cycle.time.size, np.nan) if part is None else part
+                for cycle, part in zip(cycles, parts, strict=True)
+            ]
+        )
+        shown = quantity.to_display(1.0) * values
+        columns.append(Series(heading(name, quantity.unit), shown.tolist()))
+    return columns
+
+
+def card_blocks(evaluation: Evaluation) -> list[Block]:
+    """A few lines on the duty cycles for the card; empty without cycles."""
+    study = evaluation.duty
+    if study is None:
+        return []
+    shown = _shown(study, MOST_ON_CARD)
+    lines: list[Block] = [replace(_overview(study, shown), title="", note="")]
+    words = [f"energy of {clean(cycle.name)}: {_split_words(cycle)}" for cycle in shown]
+    if hidden := len(study.cycles) - len(shown):
+        words.append(f"{hidden} more cycle{'' if hidden == 1 else 's'} (-v)")
+    worst = _worst_part(evaluation)
+    if worst is not None:
+        words.append(f"fatigue of the life: {number(worst[1], 3)}, {clean(worst[0])}")
+    return [*lines, *(Notes("", [line], headless=True, on="terminal") for line in words)]
+
+
+# ---- numbers ----
+
+
+def _shown(study: DutyStudy, most: int = MOST_SHEETS) -> list[CycleStudy]:
+    """The cycles that need most of their supply pressure, in the order of the design."""
+    ranked = sorted(study.cycles, key=lambda cycle: -cycle.worst["share"].value)[:most]
+    return [cycle for cycle in study.cycles if any(cycle is kept for kept in ranked)]
+
+
+def _opening(cycle: CycleStudy) -> str:
+    """Largest opening; past stall there is none."""
+    worst = cycle.worst.get("opening")
+    if worst is None:
+        return DASH
+    return "stalls" if math.isinf(worst.value) else value_of(OPENING, worst.value)
+
+
+def _worst_part(evaluation: Evaluation) -> tuple[str, float] | None:
+    """Part with the largest damage of the life; None if no life is stated."""
+    metric = evaluation.metrics.get("duty_fatigue")
+    if metric is None or metric.value is None or not metric.by_place:
+        return None
+    return max(metric.by_place.items(), key=lambda entry: entry[1])
+
+
+def _missed(cycle: CycleStudy) -> bool:
+    """Whether the supply does not move the load somewhere along the cycle."""
+    return not cycle.worst["reserve"].value >= 0
+
+
+# ---- tables ----
+
+
+def _overview(study: DutyStudy, cycles: Sequence[CycleStudy] | None = None) -> Table:
+    """A row for every cycle, or for some."""
+    rows = [_overview_row(cycle) for cycle in (study.cycles if cycles is None else cycles)]
+    columns = [
+        Column("duty cycle", "left", 1.3, least=12),
+        Column("duration", "right", drop=8),
+        Column("repeats", "right", drop=9),
+        Column("reserve", "right", style="state"),
+        Column("at", "right", drop=2),
+        Column("opening", "right", drop=3),
+        Column("peak, mean flow", "right", drop=4),
+        Column("supply", "right", drop=5),
+        Column("efficiency", "right", drop=6),
+    ]
+    note = "Reserve: least force left to the supply. Supply: energy per cycle."
+    if study.opening_limit is not None:
+        share = limit_text(OPENING, "max", study.opening_limit)[2:]
+        note = note.replace("supply.", f"supply with the valve at most {share} open.", 1)
+    if (figures := len(_shown(study))) < len(study.cycles):
+        note += (
+            f" Figures follow for the {figures} cycles that need the largest share of their supply "
+            "pressure."
+        )
+    return Table("Duty cycles", columns, rows, note=note)
+
+
+def _overview_row(cycle: CycleStudy) -> Row:
+    reserve = cycle.worst["reserve"]
+    peak = FLOW.to_display(cycle.worst["flow"].value)
+    cells: list[Cell] = [
+        soft(cycle.name),
+        f"{number(float(np.ptp(cycle.time)), 3)} s",
+        DASH if cycle.repeats is None else trimmed(cycle.repeats, 3),
+        value_of(FORCE, reserve.value),
+        time_of(cycle, reserve.sample),
+        _opening(cycle),
+        f"{number(peak, 3)}, {value_of(FLOW, cycle.flow_mean)}",
+        value_of(ENERGY, cycle.energies["supply_energy"]),
+        efficiency_of(cycle),
+    ]
+    return Row(cells, "missed" if _missed(cycle) else "met")
+
+
+Limit: TypeAlias = tuple[Sense, float]
+
+
+@dataclass(frozen=True, slots=True)
+class _Extreme:
+    """A result that is worst at a sample."""
+
+    name: str
+    metric: str
+    value: float
+    index: int
+    limit: Limit | None = None
+    """Sense and value of a limit that holds although the design states none."""
+
+
+def _extremes(study: DutyStudy, cycle: CycleStudy) -> Iterator[_Extreme]:
+    """The worst samples of a cycle."""
+    worst, traces = cycle.worst, cycle.traces
+    reserve, needed = worst["reserve"], worst["share"]
+    least: Limit = "min", 0.0
+    name = "least force reserve"
+    yield _Extreme(name, "duty_force_margin", reserve.value, reserve.sample, least)
+    supply = float(traces["supply"][needed.sample])
+    yield _Extreme(
+        "largest supply needed",
+        "duty_supply_needed",
+        float(traces["needed"][needed.sample]),
+        needed.sample,
+        ("max", supply),
+    )
+    if study.opening_limit is not None:
+        opening = worst["opening"]
+        most: Limit = "max", study.opening_limit
+        yield _Extreme("largest opening", "duty_opening", opening.value, opening.sample, most)
+    chambers = {"A": traces["pressure_a"], "B": traces["pressure_b"]}
+    low = min(chambers, key=lambda name: float(np.min(chambers[name])))
+    high = max(chambers, key=lambda name: float(np.max(chambers[name])))
+    at = int(np.argmin(chambers[low]))
+    name, value = f"lowest pressure, chamber {low}", float(chambers[low][at])
+    yield _Extreme(name, "duty_pressure_min", value, at, least)
+    at = int(np.argmax(chambers[high]))
+    name, value = f"highest pressure, chamber {high}", float(chambers[high][at])
+    yield _Extreme(name, "duty_pressure_max", value, at)
+    position = traces["position"]
+    left = np.minimum(position, study.stroke - position)
+    at = int(np.argmin(left))
+    stop = "retracted" if position[at] < study.stroke / 2 else "extended"
+    name = f"least travel left, {stop}"
+    yield _Extreme(name, "duty_stroke_margin", float(left[at]), at, least)
+    flow, power, absorbed = (worst[key] for key in ("flow", "power", "absorbed"))
+    yield _Extreme("peak flow", "duty_flow_peak", flow.value, flow.sample)
+    if power.value > 0:
+        yield _Extreme("peak power on the load", "duty_power_peak", power.value, power.sample)
+    if absorbed.value < 0:
+        yield _Extreme(
+            "peak absorbed power", "duty_power_absorbed", -absorbed.value, absorbed.sample
+        )
+
+
+def _margins(evaluation: Evaluation, study: DutyStudy, cycle: CycleStudy) -> Table:
+    """Where along a cycle its results are worst, and the state there."""
+    joint = cycle.record.joint
+    rows = []
+    for extreme in _extremes(study, cycle):
+        quantity = METRICS[extreme.metric]
+        required = [row for row in evaluation.requirements if row.metric == extreme.metric]
+        limits: list[Limit | None] = [(row.sense, row.limit) for row in required]
+        limits = limits or [extreme.limit]
+        state: State = ""
+        for limit in filter(None, limits):
+            beyond = extreme.value - limit[1] if limit[0] == "max" else limit[1] - extreme.value
+            within = beyond <= 1e-9 * abs(limit[1])
+            state = "missed" if not within or state == "missed" else "met"
+        value = "stalls" if math.isinf(extreme.value) else value_of(quantity, extreme.value)
+        at = cycle.state(extreme.index)
+        cells: list[Cell] = [
+            extreme.name,
+            value,
+            ", ".join(DASH if x is None else limit_text(quantity, *x) for x in limits),
+            time_of(cycle, extreme.index),
+            value_of(ANGLE, at["joint_angle"]) if joint else "",
+            value_of(LENGTH, at["position"]),
+            value_of(FORCE, at["force"]),
+            value_of(SPEED, at["speed"]),
+            f"{value_of(PRESSURE, at['pressure_a'])[:-4]}, {value_of(PRESSURE, at['pressure_b'])}",
+        ]
+        rows.append(Row(cells if joint else [*cells[:4], *cells[5:]], state))
+    columns = [
+        Column("worst along the cycle", "left", 1.6, least=27),
+        Column("result", "right", style="state"),
+        Column("limit", "right", drop=2),
+        Column("at", "right", drop=1),
+        Column("joint", "right", drop=5),
+        Column("piston", "right", drop=6),
+        Column("force", "right", drop=3),
+        Column("speed", "right", drop=4),
+        Column("pressures A, B", "right", drop=7),
+    ]
+    title = f"Cycle {clean(cycle.name)}: where margins are least"
+    return Table(title, columns if joint else [*columns[:4], *columns[5:]], rows)
+
+
+def _split_words(cycle: CycleStudy) -> str:
+    """Shares of the energy that goes in."""
+    parts = balance_of(cycle)
+    total = sum(value for _, value in parts if value > 0)
+    if total <= 0:
+        return "none"
+    names = {"work on the load": "work", "return line": "return"}
+    sinks = sorted((part for part in parts if part[1] <= 0), key=lambda part: part[1])
+    words = [f"{names.get(name, name)} {per_cent(-value / total)}" for name, value in sinks]
+    return ", ".join(words)
+
+
+def _energies(cycle: CycleStudy) -> Table:
+    """Sources and sinks of energy, for the terminal."""
+    parts = balance_of(cycle)
+    total = sum(value for _, value in parts if value > 0)
+    rows: list[Sequence[Cell]] = [
+        [
+            f"from the {name}" if value > 0 and name == "supply" else name,
+            value_text(ENERGY, value, 3),
+            per_cent(abs(value) / total) if total > 0 else DASH,
+            Share(abs(value) / total if total > 0 else 0.0),
+        ]
+        for name, value in parts
+    ]
+    columns = [
+        Column("energy per cycle", "left", 1.0),
+        Column("energy", "right", style="bold"),
+        Column("share", "right", drop=1),
+        Column("", drop=2),
+    ]
+    title = f"Cycle {clean(cycle.name)}: energy"
+    note = f"efficiency: {efficiency_of(cycle)}"
+    return Table(title, columns, rows, note=note, on="terminal")
+
+
+def _fatigue(evaluation: Evaluation, study: DutyStudy) -> Iterator[Table]:
+    """Damage of a life by part, the largest first."""
+    metric = evaluation.metrics.get("duty_fatigue")
+    if metric is None or metric.value is None:
+        return
+    ranked = sorted(metric.by_place.items(), key=lambda entry: -entry[1])
+    lives = [cycle for cycle in study.cycles if cycle.damage]
+    apart = 1 < len(lives) <= 3
+    rows: list[Sequence[Cell]] = []
+    listed = sum(damage >= LEAST_DAMAGE for _, damage in ranked)
+    listed = min(max(listed, FEWEST_PARTS), MOST_PARTS)
+    for part, damage in ranked[:listed]:
+        cells: list[Cell] = [soft(part), number(damage, 3)]
+        if apart:
+            cells += [number(cycle.damage.get(part), 3) for cycle in lives]
+        span = math.log(max(damage, LEAST_DAMAGE) / LEAST_DAMAGE) / -math.log(LEAST_DAMAGE)
+        rows.append([*cells, Share(min(span, 1.0))])
+    columns = [
+        Column("part", "left", 2.2, least=20, wraps=True),
+        Column("damage", "right", style="bold"),
+        *(Column(clean(cycle.name), "right", drop=2) for cycle in lives if apart),
+        Column("", "left", "40mm", drop=1),
+    ]
+    low = number(LEAST_DAMAGE, 1)
+    notes = [f"Miner's sum: 1 is the end of the life. Bar: logarithmic, from {low} to 1."]
+    required = [row for row in evaluation.requirements if row.metric == "duty_fatigue"]
+    notes += [f"Required: {limit_text(DAMAGE, row.sense, row.limit)}." for row in required]
+    if len(ranked) > listed:
+        largest = number(ranked[listed][1], 3)
+        notes.append(f"{len(ranked) - listed} more parts have at most {largest}.")
+    notes += [f"Not assessed: {clean(part)}, {why}." for part, why in study.unknown.items()]
+    if unstated := [cycle for cycle in study.cycles if cycle.repeats is None]:
+        named = ", ".join(clean(cycle.name) for cycle in unstated)
+        notes.append(f"Without repeats, so not counted: {named}.")
+    yield Table("Duty cycles: fatigue damage of a life", columns, rows, note=" ".join(notes))
+
+
+def _basis(study: DutyStudy) -> Notes:
+    """Assumptions of the results, and changes of the records."""
+    lines = [f"{line[0].upper()}{line[1:]}." for line in study.notes]
+    for cycle in study.cycles:
+        lines += [f"Cycle {clean(cycle.name)}: {clean(line)}." for line in cycle.record.notes]
+    return Notes("Duty cycles: assumptions", lines, on="paper")
