@@ -96,3 +96,13 @@ def test_the_flight_control_actuator_meets_its_mission():
     assert metrics["duty_fatigue"].value < 0.3
     assert metrics["duty_temperature_margin"].value > 10
     assert metrics["system_mass"].value is None
+
+
+def test_pressures_together_are_those_of_single_evaluations(knee):
+    """Two designs at once, and one of them alone."""
+    pressures = [140e5, 149e5]
+    names = ("duty_supply_energy", "duty_supply_share", "duty_fatigue", "system_mass")
+    many = ao.evaluate_many(knee, {"supply.pressure": pressures}, metrics=names)
+    metrics = ao.evaluate(knee.changed({"supply.pressure": pressures[1]})).metrics
+    for name in names:
+        assert many[name][1] == pytest.approx(metrics[name].value, rel=1e-9), name
