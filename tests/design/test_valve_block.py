@@ -350,3 +350,12 @@ def test_report_shows_the_valve_only_with_a_stated_spool(tmp_path):
     assert [row[0] for row in table.rows] == ["this valve", "open", "critical", "closed"]
     assert made.to_dict()["valve"]["curves"][1]["name"] == "open"
     assert "valve" not in ao.evaluate(ao.read(KNEE)).to_dict()
+
+
+def test_a_lapped_spool_may_be_changed_by_a_program(tmp_path):
+    """A changed design states its defaults; leakage of the other law is still refused."""
+    lines = ["type: lapped", "stroke: 0.5 mm", "clearance: 3 um"]
+    made = design(tmp_path, "rated_flow: 10 l/min", "natural_frequency: 120 Hz", spool_lines=lines)
+    assert made.changed({"supply.pressure": 150e5}).design.supply.pressure == 150e5
+    with pytest.raises(InputError, match="a second time"):
+        made.changed({"valve.leakage_flow": "0.2 l/min"})

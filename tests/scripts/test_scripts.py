@@ -24,6 +24,7 @@ def test_every_script_of_the_folder_is_tested() -> None:
         "composite_saving.py",
         "course_servo.py",
         "custom_metric.py",
+        "duty_pressure_levels.py",
         "knee_calibration.py",
         "knee_custom_constraint.py",
         "knee_dynamics.py",
