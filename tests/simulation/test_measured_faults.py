@@ -128,7 +128,7 @@ def test_a_record_acts_until_its_last_change():
         ("t [s],U [V]\n0,1\n,2\n2,1\n", "missing time", 3),
         ("t [s],U [V]\n0,1\n2,2\n1,1\n", "time does not increase", 4),
         ("t [s],U [mm]\n0,1\n2,2\n", 'column "U": ', 1),
-        ("t [s],U [V]\n0,1\n2,x\n", '"x" is not a number', 3),
+        ("t [s],U [V]\n0,1\n2,x\n", '"x" in column "U" is not a number', 3),
     ],
 )
 def test_bad_inputs_are_told_in_one_line(text, message, line):

@@ -1,0 +1,63 @@
+"""Optima with duty cycles: windows as limits, exact slopes, and one tape for any record."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import actuator_opt as ao
+from actuator_opt.optimisation.actuator import build
+from actuator_opt.optimisation.evaluator import Evaluator
+
+ROOT = Path(__file__).parents[2]
+DUTY = """
+valve: {rated_flow: 6 l/min, natural_frequency: 100 Hz}
+duty:
+  cycles:
+    - name: walk
+      file: CYCLE
+      lever_arm: 57 mm
+      repeats: 1e6
+      starts: 2000
+      torque_scale: 4
+"""
+
+
+@pytest.fixture(scope="module")
+def actuator() -> ao.Actuator:
+    """The steel cylinder with a walking cycle that its supply hardly manages."""
+    text = (ROOT / "designs" / "steel_baseline.yaml").read_text()
+    cycle = ROOT / "designs" / "cycles" / "gait_knee.csv"
+    return ao.read(text + DUTY.replace("CYCLE", str(cycle)))
+
+
+def test_recorded_models_equal_the_models(actuator: ao.Actuator) -> None:
+    """Values and slopes of all rows agree, at points that other designs share or not."""
+    problem = build(actuator.subject())
+    start = problem.problem.start
+    assert start is not None
+    points = np.stack([start, start, 1.01 * start], axis=1)
+    stepped = Evaluator(problem.problem).space.complex_steps(points)
+    for x in (points, stepped):
+        recorded, models = problem.evaluate(x), problem.by_models(x, {})
+        assert recorded.constraints.real == pytest.approx(models.constraints.real, rel=1e-9)
+        slopes = recorded.constraints.imag / 1e-30, models.constraints.imag / 1e-30
+        assert slopes[0] == pytest.approx(slopes[1], rel=1e-9, abs=1e-9)
+    assert problem.models_run_by == "compiled program"
+    few = [row for row in problem.rows if row.limit_of.metric == "duty_supply_share"]
+    assert 2 <= len(few) <= 16
+
+
+def test_a_limit_over_time_binds_at_an_exact_optimum(actuator: ao.Actuator) -> None:
+    """The worst sample holds the optimum; no sample of the cycle breaks the limit there."""
+    limit = 0.47  # without this limit the lightest cylinder needs 0.486 of its supply
+    optimum = ao.optimise(actuator.changed({"requirements.duty_supply_share.max": limit}))
+    assert optimum.status == "optimal"
+    assert optimum.kkt is not None
+    assert optimum.kkt.residual <= 1e-6
+    assert any("duty_supply_share" in name for name in optimum.kkt.active)
+    duty = optimum.evaluation.duty
+    assert duty is not None
+    assert duty.cycles[0].traces["share"].max() == pytest.approx(limit, rel=1e-6)
+    prices = {price.name: price for price in optimum.sensitivities}
+    assert any("duty_supply_share" in name for name in prices)
