@@ -1,8 +1,8 @@
 """The card of a design: what the terminal shows of an evaluation or an optimisation.
 
 At most 30 lines of an evaluation and 35 of an optimisation, 80 columns wide: the verdict, missed
-limits, what holds the design, its dimensions or masses, doubts, and the next command. The second
-and third duty cycle add two lines each. The whole page (`report.page`) follows with ``--verbose``.
+limits, what holds the design, its dimensions or masses, duty cycles, doubts, and the next command.
+The whole page (`report.page`) follows with ``--verbose``.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from . import duty, limits, optimum, report
 
 MOST_LIMITS = 11
 """Largest number of limits in a table: misses first, then the smallest margins."""
-BESIDE_DUTY = 8
-"""Largest number of limits in a table if the design has duty cycles, which need lines, too."""
+BESIDE_DUTY = 7
+"""Largest number of limits in a table beside a duty cycle, which needs lines, too."""
 MOST_MISSES, MOST_HELD = 6, 7
 """Largest number of missed limits and of active limits on the card of an optimisation."""
 MOST_REMEDIES = 6
@@ -228,7 +228,9 @@ def _limits(evaluation: Evaluation) -> list[Block]:
     rows: list[Requirement | Check] = [*_by_margin(evaluation.requirements)]
     first = sum(not row.met for row in evaluation.requirements)
     rows[first:first] = _missed_checks(evaluation)
-    most = MOST_LIMITS if evaluation.duty is None else BESIDE_DUTY
+    most = MOST_LIMITS
+    if evaluation.duty is not None:
+        most = BESIDE_DUTY + 1 - min(len(evaluation.duty.cycles), duty.MOST_ON_CARD)
     return _limit_table("quantity", rows, most, evaluation)
 
 

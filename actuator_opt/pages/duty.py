@@ -128,7 +128,8 @@ def card_blocks(evaluation: Evaluation) -> list[Block]:
         return []
     shown = _shown(study, MOST_ON_CARD)
     lines: list[Block] = [replace(_overview(study, shown), title="", note="")]
-    words = [f"energy of {clean(cycle.name)}: {_split_words(cycle)}" for cycle in shown]
+    dear = max(shown, key=lambda cycle: cycle.energies["supply_energy"])
+    words = [f"energy of {clean(dear.name)}: {_split_words(dear)}"]
     if hidden := len(study.cycles) - len(shown):
         words.append(f"{hidden} more cycle{'' if hidden == 1 else 's'} (-v)")
     worst = _worst_part(evaluation)

@@ -151,7 +151,10 @@ def test_reversed_pressures_are_detected_and_said(tmp_path):
         ("t [s],p1 [bar],p2 [bar],x [mm],F_L [N]\n", "no samples"),
         ("t [s],p1 [bar],p2 [bar],x [mm],F_L [N]\n0,1,1,1,1\n0.01,1,1,1,1\n", "too short"),
         ("0,1,2,3,4\n1,2,3,4,5\n", "no header"),
-        ("t [s],p1 [bar],p2 [bar],x [mm],F_L [N]\n0,1,x,1,1\n", '"x" in column "p2" is not a number'),
+        (
+            "t [s],p1 [bar],p2 [bar],x [mm],F_L [N]\n0,1,x,1,1\n",
+            '"x" in column "p2" is not a number',
+        ),
     ],
 )
 def test_poor_records_are_one_line(tmp_path, text, said):
