@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
+from actuator_opt.evaluation.kernel import duty_numbers
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.evaluator import Evaluator
 
@@ -61,3 +62,24 @@ def test_a_limit_over_time_binds_at_an_exact_optimum(actuator: ao.Actuator) -> N
     assert duty.cycles[0].traces["share"].max() == pytest.approx(limit, rel=1e-6)
     dear = [price for price in optimum.sensitivities if "duty_supply_share" in price.parameter]
     assert dear
+
+
+def test_slopes_of_fatigue_and_wear_are_those_of_differences(actuator: ao.Actuator) -> None:
+    """All results of the cycles, in three directions of all numbers at once, for two designs."""
+    subject = actuator.subject()
+    models, numbers = duty_numbers(subject, subject.values())
+    random = np.random.default_rng(1)
+    point = np.concatenate([numbers, 1.02 * numbers], axis=1)
+    ways = random.normal(size=(len(numbers), 2, 3)) * np.abs(point)[:, :, None]
+    stepped = np.repeat(point, 3, axis=1) + 1e-30j * ways.reshape(len(numbers), -1)
+    slopes = models(stepped).imag / 1e-30
+    h = 1e-6
+    above, below = (
+        models((np.repeat(point, 3, axis=1) + sign * h * ways.reshape(len(numbers), -1)))
+        for sign in (1, -1)
+    )
+    differences = (above - below) / (2 * h)
+    room = 1e-3 * np.abs(differences) + 1e-9 * np.abs(above) / h
+    assert np.all(np.abs(slopes - differences) <= room)
+    damage = [place.name == "damage" for place in models.places]
+    assert np.abs(differences[damage]).max() > 0

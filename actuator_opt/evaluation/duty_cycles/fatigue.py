@@ -72,13 +72,14 @@ class Fatigue:
             name: [self._history(load, numbers, tracks[name]) for load in self._loads]
             for name in self.cycles
         }
+        designs = next(iter(tracks.values())).shape[0]
         blocks = [
-            self._damage(numbers, self._counted(name, loads[name], numbers, tracks[name]))
+            self._damage(numbers, self._counted(name, loads[name], numbers, tracks[name]), designs)
             for name in self.cycles
         ]
         total = sum(blocks)
         if len(self.cycles) > 1:
-            total = total + self._damage(numbers, self._changes(loads, numbers))
+            total = total + self._damage(numbers, self._changes(loads, numbers), designs)
         return np.concatenate([*blocks, total])
 
     def _counted(
@@ -153,25 +154,76 @@ class Fatigue:
             pressure = np.where(np.repeat(behind, track.shape[1], axis=1), a, b)
         return pressure / numbers[self._rows["supply"]]
 
-    def _damage(self, numbers: Array, counted: _Counted) -> Array:
+    def _damage(self, numbers: Array, counted: _Counted, designs: int) -> Array:
         """Miner's sums of all parts (parts, columns)."""
-        largest, smallest, count = (values[self._load] for values in counted)
-        tension = self._tension[:, None, None]
-        largest, smallest = (np.where(tension & (x.real < 0), 0.0, x) for x in (largest, smallest))
-        span, metal = largest - smallest, slice(self._metal)
-        part = {key: numbers[rows][:, None] for key, rows in self._stress.items()}
-        damage = _summed(
-            count[metal],
-            amplitude=part["span"] * span[metal] / 2,
-            mean=part["offset"] + part["slope"] * (largest + smallest)[metal] / 2,
-            ultimate=part["ultimate"],
-            limit=part["limit"],
-            limit_cycles=part["limit_cycles"],
-        )
-        bolts = slice(self._metal, None)
+        real = _Counted(*(np.real(x)[..., :: x.shape[-1] // designs] for x in counted))
+        values = np.real(numbers)[:, :: numbers.shape[1] // designs]
+        largest, smallest, count = (x[self._load] for x in real)
+        kept = []
+        for x in (largest, smallest):  # (parts, cycles, designs)
+            slack = self._tension[:, None, None] & (x < 0)
+            kept.append(~slack)
+            x[slack] = 0.0
+        each, by_largest, by_smallest, by_number = self._slopes(largest, smallest, values)
+        total = (count * each).sum(axis=1)
+        if not np.iscomplexobj(numbers):
+            return total
+        shape = (*total.shape, numbers.shape[1] // designs)
+        change = np.zeros(shape)
+        steps = [np.imag(x).reshape(*x.shape[:2], designs, -1) for x in counted]
+        slopes = (count * by_largest * kept[0], count * by_smallest * kept[1], each)
+        for slope, step in zip(slopes, steps, strict=True):
+            if step.any():
+                for load in range(len(self._loads)):
+                    own = self._load == load
+                    change[own] += np.einsum("pcd,cdn->pdn", slope[own], step[load])
+        for rows, first, slope in by_number:
+            step = np.imag(numbers[rows]).reshape(len(rows), designs, -1)
+            change[first : first + len(rows)] += (count[first : first + len(rows)] * slope).sum(
+                axis=1
+            )[:, :, None] * step
+        result = np.repeat(total, shape[2], axis=1).astype(complex)
+        result.imag = change.reshape(len(total), -1)
+        return result
+
+    def _slopes(
+        self, largest: Array, smallest: Array, values: Array
+    ) -> tuple[Array, Array, Array, list[tuple[list[int], int, Array]]]:
+        """Damage of every counted cycle (parts, cycles, designs), and its slopes.
+
+        The slopes are by the ends of the cycle, and by the numbers of the parts: rows of the
+        numbers, first part, slope.
+        """
+        metal = slice(self._metal)
+        part = {key: values[rows][:, None] for key, rows in self._stress.items()}
+        span, middle = (largest - smallest)[metal], (largest + smallest)[metal] / 2
+        stress = {
+            "amplitude": part["span"] * span / 2,
+            "mean": part["offset"] + part["slope"] * middle,
+            **{key: part[key] for key in ("ultimate", "limit", "limit_cycles")},
+        }
+        each = _damage_of(stress)
+        slope = {
+            key: _damage_of({**stress, key: stress[key] + 1j * STEP}).imag / STEP for key in stress
+        }
+        swing, shift = slope["amplitude"] * part["span"] / 2, slope["mean"] * part["slope"] / 2
+        by_number = [
+            (self._stress["span"], 0, slope["amplitude"] * span / 2),
+            (self._stress["offset"], 0, slope["mean"]),
+            (self._stress["slope"], 0, slope["mean"] * middle),
+            *((self._stress[key], 0, slope[key]) for key in ("ultimate", "limit", "limit_cycles")),
+        ]
         # the life of a bolt falls with the third power of the load (`endurance.bolt_cycles`)
-        cubes = (count[bolts] * span[bolts] ** 3).sum(axis=1)
-        return np.concatenate([damage, cubes / numbers[self._life]])
+        pulse = (largest - smallest)[self._metal :]
+        life = values[self._life][:, None]
+        cube, square = pulse**3 / life, 3 * pulse**2 / life
+        by_number.append((self._life, self._metal, -cube / life))
+        return (
+            np.concatenate([each, cube]),
+            np.concatenate([swing + shift, square]),
+            np.concatenate([shift - swing, -square]),
+            by_number,
+        )
 
 
 def _ends(share: Array) -> tuple[Array, Array]:
@@ -194,24 +246,6 @@ def _damage_of(values: dict[str, Array]) -> Array:
         fatigue_limit=values["limit"],
         limit_cycles=values["limit_cycles"],
     )
-
-
-def _summed(count: Array, **stress: Array) -> Array:
-    """Miner's sum over the cycles (parts, cycles, columns).
-
-    Each cycle has few inputs and many directions: its slope by each input is computed once.
-    """
-    plain = {key: np.real(value) for key, value in stress.items()}
-    each = _damage_of(plain)
-    total: Array = (np.real(count) * each).sum(axis=1)
-    if not np.iscomplexobj(count) and not any(map(np.iscomplexobj, stress.values())):
-        return total
-    change = np.imag(count) * each
-    for key, value in stress.items():
-        if np.any(np.imag(value)):
-            slope = _damage_of({**plain, key: plain[key] + 1j * STEP}).imag / STEP
-            change = change + np.real(count) * slope * np.imag(value)
-    return total + 1j * change.sum(axis=1)
 
 
 def _turns(values: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:

@@ -117,7 +117,7 @@ class CycleModels:
     ) -> None:
         self.plan, self.records, self.names = plan, dict(records), tuple(names)
         self._row = {name: k for k, name in enumerate(names)}
-        self.common = tuple(name for name in names if "|" not in name)
+        self.common = tuple(x for x in names if "|" not in x and not x.startswith("part"))
         lives = [cycle for cycle in records if f"{cycle}|repeats" in self._row]
         self._fatigue = Fatigue(plan, lives, self._row)
         count = max(LEAST_WINDOWS, WINDOWS // len(records))

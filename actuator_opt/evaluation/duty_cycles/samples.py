@@ -336,6 +336,12 @@ class SampleModel:
         seeds : their changes in every direction (numbers, designs, directions)
         data : columns of the record (samples, columns)
         """
+        active = seeds.any(axis=(0, 1))
+        if 0 < active.sum() < len(active):  # the other directions change nothing
+            track = self.run(numbers, seeds[:, :, active], data)
+            results = np.zeros((*track.values.shape[:3], 1 + len(active)))
+            results[..., np.append(True, active)] = track.values
+            return Track(results, self.outputs)
         (count, columns), (width, designs, directions) = data.shape, seeds.shape
         points = np.empty((designs, count, width + columns))
         points[:, :, :width] = numbers.T[:, None]
