@@ -29,12 +29,15 @@ STUDIES = (
 
 
 def designs() -> None:
-    """Optimise the designs that have variables, evaluate the others, write each report."""
+    """Optimise the designs that have variables, evaluate the others, write each report.
+
+    Designs with duty cycles are evaluated: their searches take minutes.
+    """
     for path in sorted((ROOT / "designs").glob("*.yaml")):
         actuator = ao.read(path)
-        verb = "optimise" if actuator.design.variables else "report"
-        command = f"actuator-opt {verb} designs/{path.name}"
-        if actuator.design.variables:
+        searched = actuator.design.variables and actuator.design.duty is None
+        command = f"actuator-opt {'optimise' if searched else 'report'} designs/{path.name}"
+        if searched:
             plies = any(ply.ply_thickness is not None for ply in actuator.design.barrel.layup)
             subject = ao.optimise(actuator, whole_plies=plies)
             command += " --whole-plies" if plies else ""

@@ -106,3 +106,14 @@ def test_pressures_together_are_those_of_single_evaluations(knee):
     metrics = ao.evaluate(knee.changed({"supply.pressure": pressures[1]})).metrics
     for name in names:
         assert many[name][1] == pytest.approx(metrics[name].value, rel=1e-9), name
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["knee_walking", "flight_control"])
+def test_the_optimum_is_certain_and_meets_every_requirement(name):
+    """Status, optimality conditions and checks of both designs."""
+    optimum = ao.optimise(ao.read(DESIGNS / f"{name}.yaml"), starts=2, prices=False)
+    assert optimum.status == "optimal"
+    assert optimum.kkt is not None
+    assert optimum.kkt.residual <= 1e-6
+    assert optimum.evaluation.met
