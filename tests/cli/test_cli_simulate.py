@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 
 import numpy as np
 import pytest
@@ -294,6 +295,7 @@ def test_a_start_scenario_runs_around_every_design(name, tmp_path):
     """`init --scenario` writes beside a copy of the design what `check` and `simulate` take."""
     design, file = tmp_path / name, tmp_path / "more" / "step.yaml"
     design.write_bytes((DESIGNS / name).read_bytes())
+    shutil.copytree(DESIGNS / "cycles", tmp_path / "cycles")
     file.parent.mkdir()
     result = run("init", "first step", "--scenario", str(design), "--out", str(file))
     assert result.code == 0

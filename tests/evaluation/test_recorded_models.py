@@ -31,6 +31,7 @@ DESIGNS = sorted(path.stem for path in ROOT.glob("designs/*.yaml") if path.stem 
 def text_of(name):
     """Text of a shipped design, with a variable and an objective."""
     text = (ROOT / f"designs/{name}.yaml").read_text("utf-8")
+    text = text.replace("file: cycles/", f"file: {ROOT}/designs/cycles/")
     if name in FREE:
         text += f"\nvariables:\n  {FREE[name]}\n"
         if "\nobjective:" not in text:

@@ -75,7 +75,7 @@ def test_slopes_of_fatigue_and_wear_are_those_of_differences(actuator: ao.Actuat
     slopes = models(stepped).imag / 1e-30
     h = 1e-6
     above, below = (
-        models((np.repeat(point, 3, axis=1) + sign * h * ways.reshape(len(numbers), -1)))
+        models(np.repeat(point, 3, axis=1) + sign * h * ways.reshape(len(numbers), -1))
         for sign in (1, -1)
     )
     differences = (above - below) / (2 * h)

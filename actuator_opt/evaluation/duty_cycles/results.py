@@ -27,8 +27,9 @@ from .samples import SampleModel, Track, complexed, leakage_at_rest
 WINDOWS = 8
 """Windows of time of all cycles together (our choice). The extremes in each window are separate
 limits of the optimiser."""
-MOST = 200
-"""Designs that are computed together, to bound memory."""
+MOST_SAMPLES = 400_000
+"""Samples, counted in every direction of every design, that are computed together: 150 bytes each,
+to bound memory."""
 LEAST_WINDOWS = 2
 """Windows of each cycle if there are many cycles."""
 RANKS = 2
@@ -170,10 +171,12 @@ class CycleModels:
         seeds = np.zeros((*values.shape, 0))
         if directions:
             seeds = points.imag.reshape(*values.shape, directions) / STEP
+        longest = max(len(record.time) for record in self.records.values())
+        most = max(1, MOST_SAMPLES // (longest * (1 + directions)))
         with np.errstate(all="ignore"):
             rows = [
-                self._results(values[:, at : at + MOST], seeds[:, at : at + MOST])
-                for at in range(0, values.shape[1], MOST)
+                self._results(values[:, at : at + most], seeds[:, at : at + most])
+                for at in range(0, values.shape[1], most)
             ]
         return rows[0] if len(rows) == 1 else np.concatenate(rows, axis=1)
 
