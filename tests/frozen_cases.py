@@ -336,7 +336,10 @@ def _others() -> Iterator[Case]:
             step("init --out other.yaml", json=True, looks=0),
         ),
     )
-    joints = (f"init --cycle designs/cycles/{name}_knee.csv --yes" for name in ("gait", "run"))
+    joints = (
+        f"init --cycle designs/cycles/{name}.csv --yes"
+        for name in ("gait_knee", "run_knee", "squat_rise_synthetic")
+    )
     yield Case(
         "init/cycle",
         (

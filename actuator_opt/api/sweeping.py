@@ -111,7 +111,7 @@ def sweep(
     >>> vary = {"cylinder.bore": np.linspace(0.02, 0.03, 5), "rod.material": ["steel_42crmo4"]}
     >>> swept = sweep("designs/steel_baseline.yaml", vary)
     >>> swept.table()
-    <DataTable 'steel knee': 5 rows, 136 columns>
+    <DataTable 'steel knee': 5 rows, 169 columns>
     """
     from ..sweeps import sweep as run
     from ..sweeps.screen import usable_engine

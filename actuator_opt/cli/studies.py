@@ -302,7 +302,7 @@ def simulate(
     quiet: Quiet = False,
     seed: UnusedSeed = 0,
 ) -> ExitCode:
-    """Simulate a scenario, or a duty cycle of a design: servo, pressures, energy."""
+    """Simulate a scenario, or a duty cycle of a design."""
     from .. import api as verbs
 
     for name, values in (("--fit", fit), ("--column", columns)):

@@ -85,6 +85,7 @@ def test_the_file_of_a_cycle_cannot_be_varied(design):
     assert "the file of a cycle cannot be varied" in result.err
 
 
+@pytest.mark.long
 def test_a_written_optimum_names_its_files_from_its_own_folder(design, tmp_path):
     """`--write` into another folder; the hash of the stamp is that of the file."""
     target = tmp_path / "best.yaml"

@@ -385,6 +385,7 @@ def test_damaged_records_of_studies(folder, design, tmp_path):
             assert len(result.err.splitlines()) <= (1 if result.code else 3)
 
 
+@pytest.mark.long
 def test_two_sweeps_at_once_and_one_that_is_killed(folder, design, tmp_path):
     """Each leaves its own whole record; the killed one leaves none, and its store goes on."""
     store = tmp_path / "rows.db"

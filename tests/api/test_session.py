@@ -49,6 +49,7 @@ def test_the_optimum_is_that_of_optimise(steel):
     assert {**ours, "seconds": 0} == {**theirs, "seconds": 0}
 
 
+@pytest.mark.long
 def test_random_moves_agree_with_a_cold_solve(steel, priced):
     """No move of priced numbers within 2 % is worse than its cold solve, or fails without it."""
     paths = [row.parameter for row in priced.sensitivities if row.limit]

@@ -41,6 +41,7 @@ def test_report_writes_pdf_and_pages(tmp_path):
     assert found["test_bench.png"].startswith(b"\x89PNG")
 
 
+@pytest.mark.long
 def test_same_input_same_bytes(design, tmp_path, monkeypatch):
     """Two runs write the same bytes, whatever the clock, the hash seed and the folder's content."""
     monkeypatch.chdir(tmp_path)
@@ -310,6 +311,7 @@ def test_a_kill_leaves_whole_files_or_none(design, tmp_path):
                     assert abs(len(content) - sizes[name]) < 200  # the command line differs
 
 
+@pytest.mark.long
 def test_runs_at_the_same_time(design, tmp_path):
     """Two reports into one folder at once: whole files, each run's exit status its own."""
     out = tmp_path / "out"

@@ -232,6 +232,7 @@ def calibrated(tmp_path_factory):
     return result.json, file
 
 
+@pytest.mark.long
 def test_calibrate_says_what_moved(calibrated):
     """Values with bounds, requirements before and after, the optimum before and after."""
     data, _ = calibrated
@@ -247,6 +248,7 @@ def test_calibrate_says_what_moved(calibrated):
     json.dumps(data, allow_nan=False)
 
 
+@pytest.mark.long
 def test_calibrate_says_which_limit_the_best_design_newly_stands_on():
     """At 250 N the stated friction (248 N at the best design) is met for nothing; measured, not."""
     limited = ao.read(KNEE, set={"requirements.friction_running.max": "250 N"})
@@ -283,6 +285,7 @@ def test_the_bounds_of_a_requirement_are_those_of_its_causes(calibrated):
         assert abs(row[end] - row["after"]) == pytest.approx(np.hypot(*changes), rel=1e-3)
 
 
+@pytest.mark.long
 def test_calibrate_without_search_and_its_page(tmp_path):
     """--no-optimise leaves the optima out; the report is one page with the new design inside."""
     pypdf = pytest.importorskip("pypdf")

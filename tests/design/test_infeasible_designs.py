@@ -235,6 +235,7 @@ def test_a_back_up_ring_is_offered_with_all_it_needs():
         assert solved(actuator, values).status == "optimal"
 
 
+@pytest.mark.long
 def test_stops_outside_the_cylinder_are_offered():
     """Oil at the stop meets the stall force on a narrow ring: the cure moves the stops outside."""
     start = ao.start(push="1 kN", pull=0.0, stroke="200 mm", pressure="210 bar").source.text
@@ -246,6 +247,7 @@ def test_stops_outside_the_cylinder_are_offered():
     assert first["objective"] is not None
 
 
+@pytest.mark.long
 def test_a_thinner_ring_is_offered_against_friction():
     """Rings of 3.53 mm rub more than those of 2.62 mm: the next section makes up for 8 %."""
     start = ao.start(push=9e3, pull=3e3, stroke="180 mm", pressure="160 bar", stiffness=20e6)

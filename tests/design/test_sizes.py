@@ -376,6 +376,7 @@ def test_terminal_json_and_file(tmp_path):
     assert result.rounding.objective_after == pytest.approx(rounding["objective"]["rounded"])
 
 
+@pytest.mark.long
 def test_choices_with_sizes_are_those_of_brute_force():
     """The best combination is that with the best design of its sizes, each searched alone."""
     lists = {"barrel.layup[1].material": ["t700_epoxy", "im7_8552"], "seals.rod.count": [1, 2]}

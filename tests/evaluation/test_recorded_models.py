@@ -170,6 +170,7 @@ def test_custom_metrics_are_not_recorded():
     assert build(design.subject()).recorded is None
 
 
+@pytest.mark.long
 def test_the_optimum_is_that_of_the_models(monkeypatch):
     """The search over recorded models ends at the same optimum as the search over the models."""
     subject = ao.read(text_of("knee_bonded")).subject()

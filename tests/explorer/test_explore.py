@@ -155,6 +155,7 @@ def test_sections_follow_what_varies_in_lay_up_and_fittings(tmp_path):
         )
 
 
+@pytest.mark.long
 def test_many_rows_are_thinned_evenly(tmp_path):
     """One in n by key, and the best feasible; that some are left out is told."""
     file = tmp_path / "rows.db"

@@ -52,6 +52,7 @@ def test_notes_compare_the_fit_with_the_clearance_of_the_design():
     assert "RMS roughness at most 0.2 um" in text
 
 
+@pytest.mark.long
 def test_a_design_in_steps_of_a_workshop():
     """Every dimension is a multiple of its step, and the design still meets its limits."""
     found = ao.optimise(ao.read(DESIGNS / "steel_baseline.yaml"), prices=False, shop=True)

@@ -194,6 +194,7 @@ def test_a_unit_needs_a_scenario(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.long
 def test_a_scenario_alone_brings_its_design(tmp_path):
     """The unit equals that of `--scenario` with the same design; `--set` changes either file."""
     (tmp_path / "one").mkdir()

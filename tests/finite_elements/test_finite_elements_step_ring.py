@@ -17,6 +17,8 @@ from actuator_opt.finite_elements.o_ring import squeezed_ring
 from actuator_opt.finite_elements.section import Assembly, MeshedBody
 from actuator_opt.finite_elements.step_ring import squeezed_step_ring
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture(scope="module")
 def pressed():

@@ -188,6 +188,7 @@ def test_bound_and_gap(name):
         assert any(one.startswith(row.limit_of.name) for one in told), row.label
 
 
+@pytest.mark.long
 def test_nothing_is_left_below_what_is_proven():
     """A box without a design no worse than a tenth of the best is empty, or bound above it."""
     found = case(*CASES["steel"])

@@ -497,6 +497,7 @@ def test_a_time_limit_keeps_a_design_and_says_what_was_not_tried():
     assert result.design.seals.rod.compound in ("nbr_90", "nbr_70")
 
 
+@pytest.mark.long
 def test_json_says_what_was_chosen_and_what_the_others_cost():
     """The keys of `choices`, numbers in SI, runners-up sorted, nothing that is no JSON."""
     text = listed(SEALS | {"load_cases[stance].position": "[50 %]"})

@@ -202,6 +202,7 @@ def test_bent_fronts_are_even(sharp, power, count):
         assert result.values.shape[1] == count
 
 
+@pytest.mark.long
 def test_where_steps_stick():
     """In logarithms the ends of the hollow circle hold steps back; wide gaps are searched anew."""
 

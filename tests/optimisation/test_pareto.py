@@ -139,6 +139,7 @@ def test_sizes_a_front_does_not_keep_are_told():
     assert any(told in remark for remark in remarks(found))
 
 
+@pytest.mark.long
 def test_infeasible_design():
     """No front of a design that no dimensions make feasible; the exit code says so."""
     done = run("pareto", KNEE, *PAIR, "--set", "requirements.stiffness_min.min=1e9", "--json")

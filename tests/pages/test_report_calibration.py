@@ -51,6 +51,7 @@ def test_the_page_says_the_numbers_of_the_json():
         assert shown == pytest.approx(scale * value, rel=6e-3)
 
 
+@pytest.mark.long
 def test_no_page_holds_a_nan():
     """Neither words nor drawing hold a number that is none."""
     for kind in KINDS:

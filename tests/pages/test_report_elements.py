@@ -135,6 +135,7 @@ def test_sections_are_to_scale_in_their_groove(name):
 
 
 @pytest.mark.parametrize("name", BOTH)
+@pytest.mark.long
 def test_the_colour_scale_covers_the_field(name):
     """Levels rise evenly from zero past the highest stress, each written, one colour a band."""
     one = solved(name)

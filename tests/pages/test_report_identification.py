@@ -449,6 +449,7 @@ def test_a_record_makes_one_sheet(kind, tmp_path):
     assert inside.run["record_sha256"] == rows.samples_hash(found.record)
 
 
+@pytest.mark.long
 def test_equal_records_make_equal_bytes(tmp_path):
     """Identified anew, the same record gives the same PDF and PNG."""
     hashes = []

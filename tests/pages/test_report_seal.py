@@ -160,6 +160,7 @@ def area(points):
 
 
 @pytest.mark.parametrize(("name", "place"), EVERY)
+@pytest.mark.long
 def test_the_gland_is_true_to_scale(name, place):
     """Width and depth of every groove on paper are those of the design by one factor."""
     one = studied(name, place)
@@ -482,6 +483,7 @@ def sole_case(name):
 
 
 @pytest.mark.parametrize("name", ["rings", "tandem"])
+@pytest.mark.long
 def test_the_sheets_are_the_evaluation_at_its_case(name):
     """Piston and rod driven: their friction is the evaluation's within the error its tables state.
 

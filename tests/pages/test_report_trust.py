@@ -117,6 +117,7 @@ def test_a_model_without_an_envelope_is_named(block, said):
         refuse(design)
 
 
+@pytest.mark.long
 def test_an_objective_of_several_load_cases_is_bounded():
     """The friction of the worse case, minimised: its bound is close, and not above the optimum."""
     steel = Path(__file__).parents[2] / "designs" / "steel_baseline.yaml"

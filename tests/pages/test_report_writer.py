@@ -41,6 +41,7 @@ def write(subject, folder, **changes):
 
 
 @pytest.mark.parametrize("date", ["", pytest.param("2026-02-03", marks=pytest.mark.long)])
+@pytest.mark.long
 def test_same_input_same_bytes_in_any_process(tmp_path, date):
     """Two processes with different hash seeds, folders and clocks write equal files."""
     printed = []

@@ -12,6 +12,7 @@ NOTEBOOKS = Path(__file__).parents[2] / "designs" / "notebooks"
 
 
 @pytest.mark.parametrize("path", sorted(NOTEBOOKS.glob("*.ipynb")), ids=lambda path: path.stem)
+@pytest.mark.long
 def test_notebook(path, monkeypatch, capsys):
     """Each cell runs after the ones before it, as in Jupyter; the last value of a cell is shown."""
     monkeypatch.chdir(NOTEBOOKS)

@@ -15,6 +15,8 @@ from script_loader import script
 import actuator_opt as ao
 from actuator_opt.studies.bench import bench
 
+pytestmark = pytest.mark.long
+
 ROOT = Path(__file__).parents[2]
 SCRIPT = ROOT / "designs" / "scripts" / "knee_calibration.py"
 RECORD = ROOT / "designs" / "records" / "knee_bench.csv"

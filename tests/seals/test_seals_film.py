@@ -546,6 +546,7 @@ def best(limited):
     return ao.optimise(limited, starts=1)
 
 
+@pytest.mark.long
 def test_least_friction_under_a_leakage_limit(limited, best):
     """A point where the optimality conditions hold, on the limit, with finite prices."""
     assert best.status == "optimal"

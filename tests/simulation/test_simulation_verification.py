@@ -222,6 +222,7 @@ def test_shares_make_up_the_difference():
         assert together == pytest.approx(one.value / one.linear, rel=0.03)
 
 
+@pytest.mark.long
 def test_the_linear_tier_stands_where_the_valve_holds_the_load():
     """Under load the spool rests open, and what it feeds damps: both tiers have it, to 2 %."""
     found = sticking()

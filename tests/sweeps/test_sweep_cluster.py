@@ -28,6 +28,7 @@ def cluster():
         yield found
 
 
+@pytest.mark.long
 def test_a_cluster_with_a_killed_worker_gives_the_same_rows(cluster, monkeypatch, tmp_path):
     """Bytes of the CSV as on one machine; one worker is killed in the middle."""
     monkeypatch.setattr(run, "CHUNK", 50)

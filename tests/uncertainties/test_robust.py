@@ -62,6 +62,7 @@ known = cache(optimum)
 
 
 @pytest.mark.parametrize("target", [pytest.param(0.9, marks=pytest.mark.long), 0.99])
+@pytest.mark.long
 def test_one_limit_one_input_in_closed_form(target):
     """The rod is thicker by z deviations, z of the failures aimed at; the sample agrees."""
     found = known(target)
