@@ -44,6 +44,7 @@ def digests(actuator):
     return [cycle.record.digest for cycle in actuator.design.duty.cycles]
 
 
+@pytest.mark.long
 def test_a_run_and_its_report_contain_the_cycles(design, tmp_path):
     """With all files gone, the run is restored and the report repeated, with the same hash."""
     actuator = ao.read(design)

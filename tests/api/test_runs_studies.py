@@ -218,6 +218,7 @@ def test_a_store_that_is_not_what_it_was(folder, design, tmp_path):
     assert "not allowed with a run" in told("report", "last", "--set", "load.mass=3 kg")
 
 
+@pytest.mark.long
 def test_explore_takes_a_run(folder, design, tmp_path):
     """The page is that of the store's study, whichever is its newest; its design stands beside."""
     store = tmp_path / "rows.db"

@@ -114,6 +114,7 @@ def test_results_come_in_the_order_of_the_tasks(cluster):
     assert [len(part) for part in HERE.parts(range(5), 2)] == [5]
 
 
+@pytest.mark.long
 def test_without_a_scheduler_a_command_ends_with_one_line(monkeypatch):
     """Nothing answers at the address: a command of each kind, before it computes anything."""
     monkeypatch.setattr("actuator_opt.base.cluster.PATIENCE", "1s")

@@ -101,6 +101,7 @@ def test_the_knee_trades_requirements_of_three_groups(optima) -> None:
     assert len({GROUPS[name] for name in active}) >= 3
 
 
+@pytest.mark.long
 def test_relaxing_any_active_requirement_of_the_knee_saves_mass(optima) -> None:
     """Re-optimised with one limit 3 % looser, the knee is lighter, whichever limit it is."""
     knee = optima["knee_bonded"]

@@ -329,6 +329,7 @@ def test_a_design_against_enumeration():
     assert rows["retention.wall"].sizes is None
 
 
+@pytest.mark.long
 def test_what_allows_the_smaller_size_where_rounding_costs_much():
     """A bore of 20 or 23 mm for 6.4 kN: a little less force, or more pressure, allows 20 mm.
 

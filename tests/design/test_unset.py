@@ -151,6 +151,7 @@ def test_every_command_with_set_has_unset():
     }
 
 
+@pytest.mark.long
 def test_runs_and_reports_repeat_it(tmp_path):
     """A recorded run keeps the removed keys; restoring it reads the same design."""
     place = {"ACTUATOR_OPT_RUNS": str(tmp_path)}

@@ -119,6 +119,7 @@ def test_seed_decides():
         assert other.parameters[name].upper == pytest.approx(one.upper, abs=0.5 * half), name
 
 
+@pytest.mark.long
 def test_what_is_not_identifiable_stays_so():
     """Points above the Stribeck speed alone: F_S, v_s stay unknown, F_C and sigma_2 known."""
     seen = 0

@@ -296,6 +296,7 @@ def figures(circuit, spool, near, gain):
 
 
 @given(SEEDS, SPOOLS)
+@pytest.mark.long
 def test_gradients_of_random_circuits(seed, spool):
     """The complex step of every figure is its slope, over mass, damping, oil, valve and rod."""
     circuit = random_circuit(seed, driven=True)

@@ -185,6 +185,7 @@ def test_an_unstable_valve_is_called_so():
     assert "a valve with these parameters does not explain" in found
 
 
+@pytest.mark.long
 def test_temperature_and_oil_turn_the_verdict():
     """A thinner oil leaves C_q near 0.611; VG 46 has the viscosity at about 35 degC, not in 25-30.
 
@@ -196,6 +197,7 @@ def test_temperature_and_oil_turn_the_verdict():
     assert re.search(r"ISO VG 46 at 3[45]\S* °C: outside the 25 to 30 °C", other)
 
 
+@pytest.mark.long
 def test_needle_and_mass_turn_the_verdict():
     """A needle of 0.044 cm^2 drops the 0.4 bar; 400 kg swing against closed ports before 30 Hz."""
     peak = notes(**{"ports.throttle.area": "0.0436 cm^2"})["orifice and 20 Hz peak"]

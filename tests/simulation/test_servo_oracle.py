@@ -203,6 +203,7 @@ def test_ultimate_gain_is_the_check_value(side, spool, gain, period):
     assert found == (pytest.approx(gain, rel=2e-6), pytest.approx(period * 1e-3, rel=1e-5))
 
 
+@pytest.mark.long
 def test_the_loop_swings_at_its_ultimate_gain():
     """A kick of a micrometre decays below K_u, grows above it and swings with T_u on it."""
     size = {}

@@ -392,6 +392,7 @@ def test_parameters_without_effect_are_told():
 # What a record tells
 
 
+@pytest.mark.long
 def test_a_fit_finds_the_cylinder_of_the_record():
     """From the design's numbers: 32 l/min in place of 40, twice the air, leakage and friction."""
     found = fit(*case(**GUESS), {}, bench(1), ASKED)

@@ -191,6 +191,7 @@ def test_yield_of_a_linear_margin(room, quasi):
     assert found.nominal["room"] == pytest.approx(room - 36, abs=1e-9)
 
 
+@pytest.mark.long
 def test_yield_covers_for_repeated_seeds():
     """The exact bounds hold the exact yield for nearly all of 40 seeds."""
     actuator = ao.read(case.only(DIAMETERS), plugins=[sum_of_diameters(36.4)])

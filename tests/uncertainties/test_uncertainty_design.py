@@ -190,6 +190,7 @@ def test_the_command_prints_json_of_the_contract():
     assert data["outputs"]["mass"]["unit"] == "kg"
 
 
+@pytest.mark.long
 def test_the_command_writes_draws_and_pages(tmp_path):
     """CSV with a line per draw, PDF and PNG; the same bytes again."""
     files = {}
