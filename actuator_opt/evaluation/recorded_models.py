@@ -126,7 +126,7 @@ class RecordedWithDuty(RecordedFunction):
         paths = [place.path for place in models.places]
         self._count, self._width = count, len(paths)
         self._models, self._numbers = models, numbers
-        self._known: Recording | None = None
+        self._wanted: tuple[Recording, Array] | None = None
         last = count + len(paths)
 
         def function(inputs: Array) -> Array:
@@ -142,26 +142,42 @@ class RecordedWithDuty(RecordedFunction):
 
     def __call__(self, points: Array) -> Array:
         """Results (rows, k) at points (inputs, k); results of the duty cycles are computed here."""
+        before = self.recording
         rows = super().__call__(self._with_results(points))
-        if self.recording is not self._known:
-            self._known = self.recording
-            if self._known is not None:
-                used = self._known.program.used_inputs()
-                self._models.need(used[self._count : self._count + self._width])
+        if before is not None and self.recording is not before:  # it may want other results
+            return super().__call__(self._with_results(points))
         return rows
+
+    def _complete(self, points: Array, rows: Array, holds: Array) -> None:
+        missing = ~holds
+        if missing.any():  # another branch may want other results
+            points = points.copy()
+            points[:, missing] = self._with_results(points[:, missing], every=True)
+        super()._complete(points, rows, holds)
 
     def confirmed(
         self, points: Array, expected: Array | None = None, floor: float | Array = 1.0
     ) -> bool:
         """Whether the machine and the function agree, see `RecordedFunction.confirmed`."""
-        return super().confirmed(self._with_results(points), expected, floor)
+        return super().confirmed(self._with_results(points, every=True), expected, floor)
 
-    def _with_results(self, points: Array) -> Array:
+    @property
+    def _used(self) -> Array | None:
+        """Whether the recording reads each result of the cycles; None without a recording."""
+        if self.recording is None:
+            return None
+        if self._wanted is None or self._wanted[0] is not self.recording:
+            used = self.recording.program.used_inputs()
+            self._wanted = self.recording, used[self._count : self._count + self._width]
+        return self._wanted[1]
+
+    def _with_results(self, points: Array, *, every: bool = False) -> Array:
+        """Points with the results of the duty cycles; those that are not read may be 0."""
         count, last = self._count, self._count + self._width
         variables, others = points[:count], points[last:]
         known = variables if len(points) <= last else np.concatenate([variables, others])
         width = width_of(known) if np.iscomplexobj(known) else 1
-        results = self._models(self._numbers(known), width)
+        results = self._models(self._numbers(known), width, None if every else self._used)
         return np.concatenate([variables, results, others])
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
+from actuator_opt.evaluation import evaluate
 from actuator_opt.evaluation.kernel import duty_numbers
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.evaluator import Evaluator
@@ -83,3 +84,17 @@ def test_slopes_of_fatigue_and_wear_are_those_of_differences(actuator: ao.Actuat
     assert np.all(np.abs(slopes - differences) <= room)
     damage = [place.name == "damage" for place in models.places]
     assert np.abs(differences[damage]).max() > 0
+
+
+def test_a_search_leaves_other_results_as_they_are(actuator: ao.Actuator) -> None:
+    """A search computes only the results it reads; the same design still has all the others."""
+    subject = actuator.subject()
+    expected = evaluate(actuator.subject())
+    problem = build(subject)
+    start = problem.problem.start
+    assert start is not None
+    for _ in range(2):
+        problem.evaluate(start[:, None])
+    after = evaluate(subject)
+    for name, metric in expected.metrics.items():
+        assert after[name].value == metric.value, name

@@ -50,7 +50,6 @@ class Fatigue:
 
     def __init__(self, plan: Plan, cycles: Sequence[str], rows: Mapping[str, int]) -> None:
         self.cycles, self._rows = tuple(cycles), rows
-        self.needed = True
         self._known: dict[bytes, tuple[Array, Array]] = {}
         parts = sorted(enumerate(plan.parts if cycles else ()), key=lambda pair: pair[1].bolted)
         self._loads: tuple[History, ...] = tuple(dict.fromkeys(part.load for _, part in parts))
@@ -66,7 +65,7 @@ class Fatigue:
 
     def damages(self, numbers: Array, tracks: Mapping[str, Track]) -> Array:
         """Miner's sums (keys, columns) at numbers (numbers, columns)."""
-        if not self.needed or not self.keys:
+        if not self.keys:
             return np.zeros((len(self.keys), numbers.shape[1]))
         loads = {
             name: [self._history(load, numbers, tracks[name]) for load in self._loads]

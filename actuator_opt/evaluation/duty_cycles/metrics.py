@@ -83,36 +83,36 @@ def compute(
         ("duty_power_peak", "power_peak"),
         ("duty_supply_share", "share"),
         ("duty_supply_needed", "needed"),
-        ("duty_opening", "opening"),
-        ("duty_pv", "pv"),
     ):
-        _put(out, metric, extremes.of(result, maximum))
+        out.put(metric, extremes.of(result, maximum))
+    for metric, result, why in (
+        ("duty_opening", "opening", "no valve stated: add valve"),
+        ("duty_pv", "pv", "no seals on piston and rod"),
+    ):
+        values = extremes.of(result, maximum)
+        if values:
+            out.put(metric, values)
+        else:
+            out.skip(metric, why)
     absorbed = {place: -x for place, x in extremes.of("power_least", minimum).items()}
-    _put(out, "duty_power_absorbed", absorbed)
-    _put(out, "duty_force_margin", extremes.of("reserve", minimum))
+    out.put("duty_power_absorbed", absorbed)
+    out.put("duty_force_margin", extremes.of("reserve", minimum))
     low = extremes.of("pressure_a_min", minimum, "chamber A")
     low |= extremes.of("pressure_b_min", minimum, "chamber B")
     high = extremes.of("pressure_a_max", maximum, "chamber A")
     high |= extremes.of("pressure_b_max", maximum, "chamber B")
-    _put(out, "duty_pressure_min", low)
-    _put(out, "duty_pressure_max", high)
+    out.put("duty_pressure_min", low)
+    out.put("duty_pressure_max", high)
     air = fluid.ATMOSPHERIC_PRESSURE
-    _put(out, "duty_suction_ratio", {place: (p + air) / air for place, p in low.items()})
+    out.put("duty_suction_ratio", {place: (p + air) / air for place, p in low.items()})
     least = extremes.of("position_min", minimum, "retracted")
     most = extremes.of("position_max", maximum, "extended")
-    _put(out, "duty_stroke_margin", least | {place: g.stroke - x for place, x in most.items()})
+    out.put("duty_stroke_margin", least | {place: g.stroke - x for place, x in most.items()})
     _sums(v, design, results, out)
     _life(v, design, results, out)
     supply.compute(v, design, results, actuator_mass, out)
     tank = out.metrics.get("duty_tank_temperature", {}).get("")
     thermal.compute(v, design, stock, g, results, tank, out)
-
-
-def _put(out: MetricArrays, metric: str, values: dict[str, Array]) -> None:
-    if values:
-        out.put(metric, values)
-    else:
-        out.skip(metric, "no valve stated: add valve")
 
 
 class _Extremes:

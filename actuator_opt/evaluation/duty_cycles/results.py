@@ -146,26 +146,25 @@ class CycleModels:
         order += [self._row[f"{name}|{key}"] for key in CYCLE]
         return _Cycle(self.plan, record, model, np.stack(columns, axis=1), order, count, phases)
 
-    def need(self, rows: Array) -> None:
-        """Compute only results that are needed from now on, (places,) of truth; others are 0."""
-        at = 0
-        for cycle in self._cycles.values():
-            cycle.need(rows[at : at + len(cycle.keys)])
-            at += len(cycle.keys)
-        self._fatigue.needed = bool(rows[at : at + len(self._fatigue.keys)].any())
-
-    def __call__(self, points: Array, width: int | None = None) -> Array:
+    def __call__(
+        self, points: Array, width: int | None = None, wanted: Array | None = None
+    ) -> Array:
         """Results (places, k) at numbers (numbers, k), real or complex.
 
-        `width` is the number of neighbouring complex columns that are directions of one design;
-        None: those with equal real parts.
+        Parameters
+        ----------
+        points : the numbers
+        width : number of neighbouring complex columns that are directions of one design; None:
+            those with equal real parts
+        wanted : whether each result is wanted (places,); others may be 0. None: all
         """
         directions = 0
         if np.iscomplexobj(points):
             width = width or width_of(points)
             if width is None:  # different numbers of directions
                 parts = np.split(points, _firsts(points)[1:], axis=1)
-                return np.concatenate([self(part, part.shape[1]) for part in parts], axis=1)
+                rows = [self(part, part.shape[1], wanted) for part in parts]
+                return np.concatenate(rows, axis=1)
             directions = width
         values = points.real[:, :: max(directions, 1)]
         seeds = np.zeros((*values.shape, 0))
@@ -175,7 +174,7 @@ class CycleModels:
         most = max(1, MOST_SAMPLES // (longest * (1 + directions)))
         with np.errstate(all="ignore"):
             rows = [
-                self._results(values[:, at : at + most], seeds[:, at : at + most])
+                self._results(values[:, at : at + most], seeds[:, at : at + most], wanted)
                 for at in range(0, values.shape[1], most)
             ]
         return rows[0] if len(rows) == 1 else np.concatenate(rows, axis=1)
@@ -185,26 +184,33 @@ class CycleModels:
         seeds = np.zeros((*values.shape, 0))
         return {name: cycle.track(values, seeds) for name, cycle in self._cycles.items()}
 
-    def _results(self, values: Array, seeds: Array) -> Array:
+    def _results(self, values: Array, seeds: Array, wanted: Array | None) -> Array:
         """Results (places, columns) at values (numbers, designs)."""
+        wanted = np.ones(len(self.places), dtype=bool) if wanted is None else wanted
         numbers = values
         if seeds.shape[2]:
             numbers = (values[:, :, None] + 1j * STEP * seeds).reshape(len(values), -1)
-        blocks, tracks = [], {}
+        blocks: list[Array] = []
+        tracks: dict[str, Track] = {}
+        first = 0
         for name, cycle in self._cycles.items():
             tracks[name] = cycle.track(values, seeds)
             u = dict(zip((*self.common, *CYCLE), numbers[cycle.order], strict=True))
-            blocks.append(cycle.results(u, tracks[name]))
+            own = wanted[first : first + len(cycle.keys)]
+            blocks.append(cycle.results(u, tracks[name], own))
+            first += len(cycle.keys)
         u = dict(zip(self.names, numbers, strict=True))
-        blocks.append(self._fatigue.damages(numbers, tracks))
+        if wanted[first:-1].any():
+            blocks.append(self._fatigue.damages(numbers, tracks))
+        else:
+            blocks.append(np.zeros((len(self._fatigue.keys), numbers.shape[1])))
         blocks.append(np.reshape(leakage_at_rest(self.plan, u), (1, -1)))
         return np.concatenate(blocks)
 
 
 class _Block(NamedTuple):
-    """Results that are computed together: names, number of rows, and their function."""
+    """Results that are computed together: number of rows, and their function."""
 
-    names: tuple[str, ...]
     rows: int
     results: Callable[[Numbers, Track], Array]
 
@@ -234,33 +240,27 @@ class _Cycle:
         pv = [("pv", f"{label}|{place}") for label in labels for place in _ranked(self.windows)]
         self.keys: list[tuple[str, str]] = [*sums, *seals, *extremes, *ends, *pv]
         self._blocks = (
-            _Block(SUMS, len(sums), self._sums),
-            _Block(SEAL_SUMS, len(seals), self._seal_sums),
+            _Block(len(sums), self._sums),
+            _Block(len(seals), self._seal_sums),
             _Block(
-                tuple(self.extremes),
                 len(extremes),
                 lambda u, track: self._worst(self.extremes, self.windows, track),
             ),
-            _Block(tuple(ENDS), len(ends), lambda u, track: self._worst(ENDS, self.whole, track)),
-            _Block(("pv",), len(pv), self._pressure_times_speed),
+            _Block(len(ends), lambda u, track: self._worst(ENDS, self.whole, track)),
+            _Block(len(pv), self._pressure_times_speed),
         )
-        self._needed = [True] * len(self._blocks)
-
-    def need(self, rows: Array) -> None:
-        """Compute only the blocks of results with needed rows, (keys,) of truth."""
-        names = {name for (name, _), needed in zip(self.keys, rows, strict=True) if needed}
-        self._needed = [any(name in names for name in block.names) for block in self._blocks]
 
     def track(self, values: Array, seeds: Array) -> Track:
         """Results of all samples."""
         return self.model.run(values[self.order], seeds[self.order], self.data)
 
-    def results(self, u: Numbers, track: Track) -> Array:
-        """All results (keys, columns)."""
+    def results(self, u: Numbers, track: Track, wanted: Array) -> Array:
+        """All results (keys, columns); 0 in blocks without a wanted result."""
         columns = track.shape[0] * track.shape[1]
+        parts = np.split(wanted, np.cumsum([block.rows for block in self._blocks])[:-1])
         blocks = [
-            block.results(u, track) if needed else np.zeros((block.rows, columns))
-            for block, needed in zip(self._blocks, self._needed, strict=True)
+            block.results(u, track) if part.any() else np.zeros((block.rows, columns))
+            for block, part in zip(self._blocks, parts, strict=True)
         ]
         return np.concatenate(blocks)
 
