@@ -48,7 +48,7 @@ from . import (
 from .barrel import SEAL_STEP, Wall
 from .circuit import wall_compliance
 from .duty_cycles import metrics as duty_metrics, numbers as numbers_module
-from .duty_cycles.numbers import Numbers, Plan, stacked_numbers
+from .duty_cycles.numbers import Numbers, SamplePlan, stacked_numbers
 from .duty_cycles.results import CycleModels, results_in
 from .film_tables import FilmTable, Key, Running
 from .geometry import Geometry
@@ -507,7 +507,7 @@ def duty_results(subject: PreparedDesign, v: Values) -> MetricArrays:
     return out
 
 
-def _duty_numbers(subject: PreparedDesign, v: Values, s: Statics) -> tuple[Plan, Numbers]:
+def _duty_numbers(subject: PreparedDesign, v: Values, s: Statics) -> tuple[SamplePlan, Numbers]:
     basis = s.base
     return numbers_module.collect(
         v,
@@ -522,7 +522,7 @@ def _duty_numbers(subject: PreparedDesign, v: Values, s: Statics) -> tuple[Plan,
     )
 
 
-def _cycle_models(subject: PreparedDesign, plan: Plan, numbers: Numbers) -> CycleModels:
+def _cycle_models(subject: PreparedDesign, plan: SamplePlan, numbers: Numbers) -> CycleModels:
     duty = subject.design.duty
     assert duty is not None
     names = tuple(numbers)

@@ -92,15 +92,8 @@ def recorded_models(
     if subject.design.duty is None:
         return RecordedFunction(rows, names, present, structure)
     models = kernel.duty_numbers(subject, subject.values())[0]
-    return RecordedWithDuty(
-        rows,
-        names,
-        present,
-        structure,
-        count,
-        models,
-        RecordedFunction(duty_numbers, names, present, [*structure, "duty numbers"]),
-    )
+    inner = RecordedFunction(duty_numbers, names, present, [*structure, "duty numbers"])
+    return RecordedWithDuty(rows, names, present, structure, count, models, inner)
 
 
 class RecordedWithDuty(RecordedFunction):

@@ -18,7 +18,7 @@ from ..rendering.blocks import Chart, TerminalFigure, clean
 from ..rendering.chart import Axis, Curve, Level, Panel, Points, known
 from ..rendering.ink import BLACK, BLUE, GREY, WHITE, Ink, Point
 from ..rendering.text import DASH, limit_text, number, unit_text, value_text
-from ..rendering.waterfall import Step, waterfall
+from ..rendering.waterfall import WaterfallBar, waterfall
 from .section import choose_scale, scale_bar
 
 WIDTHS = (96.0, 78.0)
@@ -350,7 +350,7 @@ def _energy_picture(cycle: CycleStudy) -> Ink | None:
     parts = balance_of(cycle)
     if not any(value > 0 for _, value in parts):
         return None
-    steps = [Step(name, value, value_text(ENERGY, abs(value), 3)) for name, value in parts]
+    steps = [WaterfallBar(name, value, value_text(ENERGY, abs(value), 3)) for name, value in parts]
     words = efficiency_of(cycle)
     beside = words if cycle.way == 0 else f"efficiency {words}"
     return waterfall("Energy per cycle", steps, WIDTHS[1], beside=beside)

@@ -13,7 +13,7 @@ from ..rendering.axes import per_cent, time_words
 from ..rendering.chart import Axis, Curve, Panel
 from ..rendering.ink import Ink
 from ..rendering.text import number, value_text
-from ..rendering.waterfall import Step, waterfall
+from ..rendering.waterfall import WaterfallBar, waterfall
 from ..simulation.result import Simulation
 
 ENERGY = RESULTS["supply_energy"]
@@ -94,7 +94,7 @@ def share_picture(simulation: Simulation, width: float) -> Ink | None:
     if efficiency is not None:
         beside = f"efficiency {value_text(RESULTS['efficiency'], efficiency, 3)}"
     steps = [
-        Step(
+        WaterfallBar(
             share.name,
             share.energy,
             value_text(ENERGY, abs(share.energy), 4),

@@ -18,7 +18,7 @@ GIVEN, TAKEN, KEPT = BLUE, OCHRE, "#7d868e"
 """Fill colours of sources, of sinks, and of stored energy."""
 
 
-class Step(NamedTuple):
+class WaterfallBar(NamedTuple):
     """A bar: its name, its value (positive for a source) and the value in words."""
 
     name: str
@@ -28,7 +28,7 @@ class Step(NamedTuple):
     """Whether the energy is stored."""
 
 
-def waterfall(title: str, steps: Sequence[Step], width: float, *, beside: str = "") -> Ink:
+def waterfall(title: str, steps: Sequence[WaterfallBar], width: float, *, beside: str = "") -> Ink:
     """The bars under a title, with words right of the title; the sources are 100 %.
 
     The sources must come first and add up to more than zero.

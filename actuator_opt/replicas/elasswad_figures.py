@@ -11,7 +11,7 @@ from ..base.numeric import Array
 from ..rendering.axes import Axes
 from ..rendering.ink import BLUE, GREEN, GREY, OCHRE, PALE, Ink, spread_within
 from ..rendering.text import number
-from .elasswad_models import Along, CycleRecord
+from .elasswad_models import Along, StrokeRecord
 
 DESIGNED: dict[str, Any] = {"stroke": BLUE, "pen": 0.45}
 
@@ -79,7 +79,7 @@ def _panel(
     return axes
 
 
-def record_figure(record: CycleRecord, along: Along, *, width: float = 180.0) -> Ink:
+def record_figure(record: StrokeRecord, along: Along, *, width: float = 180.0) -> Ink:
     """Pressure and radial expansion (above), and k_eq as published and as derived (below)."""
     panel, height, row = 48.0, 33.0, 53.0
     ink = Ink(width, 2 * row)

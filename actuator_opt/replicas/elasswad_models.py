@@ -256,7 +256,7 @@ SPEED = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class CycleRecord:
+class StrokeRecord:
     """Time [s], pressure difference [Pa], and piston position as a share of the stroke."""
 
     time: Array
@@ -282,7 +282,7 @@ class Along:
 
 def pressure_record(
     *, average: float, largest: float, stroke: float, speed: float, count: int = 241
-) -> CycleRecord:
+) -> StrokeRecord:
     """One stroke out and back: a pulse of pressure each way, zero where the piston turns.
 
     x = s/2 (1 - cos(wt)), s w/2 the largest speed; p = p_max (a q + (1 - a) q^2), q = sin^2(wt),
@@ -302,14 +302,14 @@ def pressure_record(
     turn = np.linspace(0.0, 2 * pi, count)
     pulse = np.sin(turn) ** 2
     share = 8 * average / largest - 3
-    return CycleRecord(
+    return StrokeRecord(
         time=turn * stroke / (2 * speed),
         pressure=largest * pulse * (share + (1 - share) * pulse),
         place=(1 - np.cos(turn)) / 2,
     )
 
 
-def own_record(evaluation: Evaluation) -> CycleRecord:
+def own_record(evaluation: Evaluation) -> StrokeRecord:
     """The record whose pressures give the published friction, 166 N on average and 400 N at most.
 
     Friction follows from eq. 15 to 20 with the published coefficient and the design's ring.
@@ -352,7 +352,7 @@ def chambers(place: Array, *, growth_per_pressure: float) -> Array:
     return stiffness.series(hydraulic, PAPER.rod_stiffness)
 
 
-def along(evaluation: Evaluation, record: CycleRecord) -> Along:
+def along(evaluation: Evaluation, record: StrokeRecord) -> Along:
     """Expansion and stiffness, by the published and derived formulas, at every time of a record."""
     wall = PAPER.wall(wall_thickness(evaluation))
     printed, grown = published.equivalent_stiffness_as_published(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from actuator_opt.design.cycle_record import read_cycle
-from actuator_opt.evaluation.duty_cycles.numbers import Plan
+from actuator_opt.evaluation.duty_cycles.numbers import SamplePlan
 from actuator_opt.evaluation.duty_cycles.results import CycleModels, Place
 
 BAR = 1e5
@@ -36,7 +36,7 @@ def numbers(**changed: float) -> dict[str, float]:
 
 def results(text: str, *, linkage: bool = False, **changed: float) -> dict[Place, float]:
     """Results of a cycle by place."""
-    plan = Plan(frozenset(["walk"] if linkage else []), True, (), (), (), {})
+    plan = SamplePlan(frozenset(["walk"] if linkage else []), True, (), (), (), {})
     values = numbers(**changed)
     models = CycleModels(plan, {"walk": read_cycle(text)}, tuple(values))
     rows = models(np.array([*values.values()])[:, None])[:, 0]
@@ -108,7 +108,7 @@ def test_the_energy_of_the_supply_is_that_of_all_parts_of_the_split():
         at["supply_energy"], rel=1e-12
     )
     # the throttled energy is also that of both open edges, sample by sample
-    plan = Plan(frozenset(["walk"]), True, (), (), (), {})
+    plan = SamplePlan(frozenset(["walk"]), True, (), (), (), {})
     values = numbers(other_friction=250.0, **LEAK)
     models = CycleModels(plan, {"walk": read_cycle(text)}, tuple(values))
     track = models.tracks(np.array([*values.values()])[:, None])["walk"]
@@ -137,7 +137,7 @@ def test_slopes_of_all_results_are_those_of_differences(name: str):
     """Exact slopes against central differences."""
     text = (CYCLES / "gait_knee.csv").read_text()
     values = numbers(other_friction=250.0, **LEAK)
-    plan = Plan(frozenset(["walk"]), True, (), (), (), {})
+    plan = SamplePlan(frozenset(["walk"]), True, (), (), (), {})
     models = CycleModels(plan, {"walk": read_cycle(text)}, tuple(values))
     point, row = np.array([*values.values()]), [*values].index(name)
     step = point.astype(complex)

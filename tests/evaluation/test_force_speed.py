@@ -7,13 +7,13 @@ import pytest
 from duty_page_case import cycle, evaluated
 
 from actuator_opt.evaluation.duty_cycles.force_speed import force_limits
-from actuator_opt.evaluation.duty_cycles.numbers import Plan
+from actuator_opt.evaluation.duty_cycles.numbers import SamplePlan
 
 BAR = 1e5
 AREA_A, AREA_B = math.pi / 4 * 0.023**2, math.pi / 4 * (0.023**2 - 0.013**2)
 EDGE = 10 / 60000 / math.sqrt(35 * BAR)
 """Cylinder 23/13 mm, 210 bar, return 5 bar, valve of 10 l/min at 35 bar per edge."""
-PLAN = Plan(frozenset(), True, (), (), (), {})
+PLAN = SamplePlan(frozenset(), True, (), (), (), {})
 
 
 def limits(plan=PLAN, speeds=(0.0,), **changed):
@@ -81,7 +81,7 @@ def test_the_curves_end_where_the_chamber_falls_to_the_pressure_of_the_air():
 
 def test_without_a_valve_the_supply_alone_limits_the_force():
     """The curve is level, and only for the direction in which the cycle moves."""
-    found = limits(Plan(frozenset(), False, (), (), (), {}), speeds=(0.0, 0.3))
+    found = limits(SamplePlan(frozenset(), False, (), (), (), {}), speeds=(0.0, 0.3))
     assert [*found] == [("extending", None)]  # the cycle does not retract
     limit = found["extending", None]
     assert limit.speed[-1] == pytest.approx(0.3)

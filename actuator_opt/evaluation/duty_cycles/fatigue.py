@@ -15,10 +15,10 @@ import numpy.typing as npt
 
 from ...base.numeric import STEP, Array
 from ...models import endurance, rainflow
-from .numbers import LIFE, STRESS, History, Plan
+from .numbers import LIFE, STRESS, History, SamplePlan
 
 if TYPE_CHECKING:
-    from .samples import Track
+    from .samples import SampleResults
 
 
 MOST_KNOWN = 1000
@@ -34,7 +34,7 @@ class _Counted(NamedTuple):
     """Number of times each occurs in a life; 0 fills up the cycles of a load."""
 
 
-class Fatigue:
+class CycleFatigue:
     """Damage of all parts by the cycles of a life.
 
     Parameters
@@ -48,7 +48,7 @@ class Fatigue:
     keys : (cycle, "damage", part) of every result; the cycle is "" for the whole life
     """
 
-    def __init__(self, plan: Plan, cycles: Sequence[str], rows: Mapping[str, int]) -> None:
+    def __init__(self, plan: SamplePlan, cycles: Sequence[str], rows: Mapping[str, int]) -> None:
         self.cycles, self._rows = tuple(cycles), rows
         self._known: dict[bytes, tuple[Array, Array]] = {}
         parts = sorted(enumerate(plan.parts if cycles else ()), key=lambda pair: pair[1].bolted)
@@ -63,7 +63,7 @@ class Fatigue:
         words = (*self.cycles, "") if parts else ()
         self.keys = [(cycle, "damage", part.place) for cycle in words for _, part in parts]
 
-    def damages(self, numbers: Array, tracks: Mapping[str, Track]) -> Array:
+    def damages(self, numbers: Array, tracks: Mapping[str, SampleResults]) -> Array:
         """Miner's sums (keys, columns) at numbers (numbers, columns)."""
         if not self.keys:
             return np.zeros((len(self.keys), numbers.shape[1]))
@@ -82,7 +82,7 @@ class Fatigue:
         return np.concatenate([*blocks, total])
 
     def _counted(
-        self, name: str, shares: Sequence[Array], numbers: Array, track: Track
+        self, name: str, shares: Sequence[Array], numbers: Array, track: SampleResults
     ) -> _Counted:
         """Counted cycles of a duty cycle, and those of its starts, for each load."""
         repeats, starts = (numbers[self._rows[f"{name}|{key}"]] for key in LIFE)
@@ -141,7 +141,7 @@ class Fatigue:
             count[: len(pair[0]), k] = 1.0
         return rainflow.Cycles(index[0], index[1], count)
 
-    def _history(self, load: History, numbers: Array, track: Track) -> Array:
+    def _history(self, load: History, numbers: Array, track: SampleResults) -> Array:
         """The load at all samples as a share of its full pulse (samples, columns)."""
         if load == "rod":
             return -track.array("force") / numbers[self._rows["rod_pulse"]]

@@ -17,7 +17,7 @@ from ...base.dataclass import dataclass
 from ...base.numeric import Array
 from ...models import quasi_static
 from ..values import plain
-from .numbers import Numbers, Plan
+from .numbers import Numbers, SamplePlan
 from .samples import sample
 
 POINTS = 41
@@ -57,7 +57,7 @@ class ForceLimit:
 
 
 def force_limits(
-    plan: Plan, u: Mapping[str, Array], speeds: npt.NDArray[np.float64]
+    plan: SamplePlan, u: Mapping[str, Array], speeds: npt.NDArray[np.float64]
 ) -> tuple[ForceLimit, ...]:
     """Limits of both directions: at the opening limit of the valve, then fully open.
 
@@ -88,7 +88,9 @@ def force_limits(
     return tuple(limits)
 
 
-def _last_speed(plan: Plan, u: Numbers, sign: float, speeds: npt.NDArray[np.float64]) -> float:
+def _last_speed(
+    plan: SamplePlan, u: Numbers, sign: float, speeds: npt.NDArray[np.float64]
+) -> float:
     """Speed at which the whole supply pressure is lost in the edge that feeds the chamber."""
     if not plan.valve:
         return float(np.max(sign * speeds, initial=0.0))
@@ -100,7 +102,7 @@ def _last_speed(plan: Plan, u: Numbers, sign: float, speeds: npt.NDArray[np.floa
 
 
 def _limit(
-    plan: Plan,
+    plan: SamplePlan,
     u: Numbers,
     sign: float,
     opening: float | None,

@@ -7,6 +7,7 @@ from functools import reduce
 
 from ...base.numeric import Array, maximum, minimum, real, where
 from ...design.model import Design
+from ...metrics.table import ROWS
 from ...models import fluid, wear as models_wear
 from ..geometry import Geometry
 from ..limits import MaterialValues, MetricArrays
@@ -50,8 +51,6 @@ NAMES = (
 )
 """All metrics of duty cycles."""
 
-LEAST_SQUEEZE = 0.08
-"""Squeeze below which a round ring leaks (gland tables, see check 5.1)."""
 Extreme = Callable[[Array, Array], Array]
 
 
@@ -222,8 +221,11 @@ def _squeezed(v: Values, seal: str, out: MetricArrays) -> Array | None:
     ]
     if not squeezes:
         return None
-    least = reduce(minimum, squeezes)
-    return v[f"seals.{_block(seal)}.section"] * (smallest(least) - LEAST_SQUEEZE)
+    check = ROWS["seal_squeeze"].check
+    assert check is not None
+    assert check.limit is not None
+    spare = smallest(reduce(minimum, squeezes)) - check.limit
+    return v[f"seals.{_block(seal)}.section"] * spare
 
 
 def _severities(

@@ -71,7 +71,7 @@ class FatiguePart:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class SamplePlan:
     """Structure of a design, for the model of the samples."""
 
     linked: frozenset[str]
@@ -96,7 +96,7 @@ def collect(
     sections: Sequence[RodSection],
     loaded_joints: Sequence[LoadedJoint],
     leakage: Array,
-) -> tuple[Plan, Numbers]:
+) -> tuple[SamplePlan, Numbers]:
     """The plan of the samples, and all numbers on which they depend."""
     supply, drain = v["supply.pressure"], v["supply.return_pressure"]
     numbers: Numbers = {
@@ -140,7 +140,7 @@ def collect(
         for cycle in design.duty.cycles
         if cycle.lever_arm is None and design.duty.record(cycle).joint
     )
-    plan = Plan(linked, design.valve is not None, lines, seals, parts, unknown)
+    plan = SamplePlan(linked, design.valve is not None, lines, seals, parts, unknown)
     return plan, numbers
 
 

@@ -20,9 +20,9 @@ from ...base.quantities import Sense
 from ...design.cycle_record import CycleRecord
 from ...models import heat_transfer, supply_sizing, wear
 from ..values import Values
-from .fatigue import Fatigue
-from .numbers import CYCLE, Numbers, Plan
-from .samples import SampleModel, Track, complexed, leakage_at_rest
+from .fatigue import CycleFatigue
+from .numbers import CYCLE, Numbers, SamplePlan
+from .samples import SampleModel, SampleResults, complexed, leakage_at_rest
 
 WINDOWS = 8
 """Windows of time of all cycles together (our choice). The extremes in each window are separate
@@ -111,7 +111,7 @@ class CycleModels:
 
     def __init__(
         self,
-        plan: Plan,
+        plan: SamplePlan,
         records: Mapping[str, CycleRecord],
         names: Sequence[str],
         phases: Mapping[str, Sequence[float]] | None = None,
@@ -120,7 +120,7 @@ class CycleModels:
         self._row = {name: k for k, name in enumerate(names)}
         self.common = tuple(x for x in names if "|" not in x and not x.startswith("part"))
         lives = [cycle for cycle in records if f"{cycle}|repeats" in self._row]
-        self._fatigue = Fatigue(plan, lives, self._row)
+        self._fatigue = CycleFatigue(plan, lives, self._row)
         count = max(LEAST_WINDOWS, WINDOWS // len(records))
         self._models: dict[tuple[str | bool, ...], SampleModel] = {}
         self._cycles: dict[str, _Cycle] = {}
@@ -179,7 +179,7 @@ class CycleModels:
             ]
         return rows[0] if len(rows) == 1 else np.concatenate(rows, axis=1)
 
-    def tracks(self, values: Array) -> dict[str, Track]:
+    def tracks(self, values: Array) -> dict[str, SampleResults]:
         """Results of all samples of every cycle, at numbers (numbers, designs)."""
         seeds = np.zeros((*values.shape, 0))
         return {name: cycle.track(values, seeds) for name, cycle in self._cycles.items()}
@@ -191,7 +191,7 @@ class CycleModels:
         if seeds.shape[2]:
             numbers = (values[:, :, None] + 1j * STEP * seeds).reshape(len(values), -1)
         blocks: list[Array] = []
-        tracks: dict[str, Track] = {}
+        tracks: dict[str, SampleResults] = {}
         first = 0
         for name, cycle in self._cycles.items():
             tracks[name] = cycle.track(values, seeds)
@@ -212,7 +212,7 @@ class _Block(NamedTuple):
     """Results that are computed together: number of rows, and their function."""
 
     rows: int
-    results: Callable[[Numbers, Track], Array]
+    results: Callable[[Numbers, SampleResults], Array]
 
 
 class _Cycle:
@@ -220,7 +220,7 @@ class _Cycle:
 
     def __init__(
         self,
-        plan: Plan,
+        plan: SamplePlan,
         record: CycleRecord,
         model: SampleModel,
         data: Array,
@@ -250,11 +250,11 @@ class _Cycle:
             _Block(len(pv), self._pressure_times_speed),
         )
 
-    def track(self, values: Array, seeds: Array) -> Track:
+    def track(self, values: Array, seeds: Array) -> SampleResults:
         """Results of all samples."""
         return self.model.run(values[self.order], seeds[self.order], self.data)
 
-    def results(self, u: Numbers, track: Track, wanted: Array) -> Array:
+    def results(self, u: Numbers, track: SampleResults, wanted: Array) -> Array:
         """All results (keys, columns); 0 in blocks without a wanted result."""
         columns = track.shape[0] * track.shape[1]
         parts = np.split(wanted, np.cumsum([block.rows for block in self._blocks])[:-1])
@@ -264,7 +264,7 @@ class _Cycle:
         ]
         return np.concatenate(blocks)
 
-    def _sums(self, u: Numbers, track: Track) -> Array:
+    def _sums(self, u: Numbers, track: SampleResults) -> Array:
         time = self.record.time[:, None] * u["time_scale"]
         total = self._total_flow(track.array("flow"))
         most = np.argmax(total.real, axis=0)[None]
@@ -285,7 +285,7 @@ class _Cycle:
             total = total + (1 - share) * flow[left] + share * flow[left + 1]
         return total
 
-    def _seal_sums(self, u: Numbers, track: Track) -> Array:
+    def _seal_sums(self, u: Numbers, track: SampleResults) -> Array:
         """Severity and friction energy of every seal."""
         x = track.array("position")
         count = range(len(self.plan.rings))
@@ -297,7 +297,7 @@ class _Cycle:
         return np.stack(rows) if rows else np.empty((0, x.shape[1]))
 
     def _worst(
-        self, extremes: Mapping[str, tuple[str, Sense]], windows: Windows, track: Track
+        self, extremes: Mapping[str, tuple[str, Sense]], windows: TimeWindows, track: SampleResults
     ) -> Array:
         """Extremes in windows, name by name."""
         outputs = np.array([track.outputs.index(output) for output, _ in extremes.values()])
@@ -307,7 +307,7 @@ class _Cycle:
         picked = complexed(track.values[rows, outputs[:, None, None], designs])
         return picked.reshape(rows.shape[0] * rows.shape[1], -1)
 
-    def _pressure_times_speed(self, u: Numbers, track: Track) -> Array:
+    def _pressure_times_speed(self, u: Numbers, track: SampleResults) -> Array:
         """Largest contact pressure times speed of every seal, in windows."""
         blocks = []
         for i in range(len(self.plan.rings)):
@@ -330,7 +330,7 @@ SEAL_SUMS = ("severity", "seal_friction_energy")
 """Sums over a cycle for each seal."""
 
 
-def sums_of(u: Numbers, time: Array, track: Track) -> dict[str, Array]:
+def sums_of(u: Numbers, time: Array, track: SampleResults) -> dict[str, Array]:
     """Sums over the motion and over time."""
     x, supply = track.array("position"), track.array("supply")
     leakage, force = track.array("leakage"), track.array("force")
@@ -401,7 +401,7 @@ def _exchange(
     return flows
 
 
-class Windows(NamedTuple):
+class TimeWindows(NamedTuple):
     """Windows of time of a cycle."""
 
     labels: tuple[str, ...]
@@ -428,21 +428,21 @@ class Windows(NamedTuple):
         return found.reshape(keys.shape[2], -1, keys.shape[3])
 
 
-def windows_of(record: CycleRecord, windows: int) -> Windows:
+def windows_of(record: CycleRecord, windows: int) -> TimeWindows:
     """Windows of a record; the last sample of a closed cycle repeats its first."""
     count = len(record.time) - (1 if record.closed else 0)
     edges = np.linspace(0, count, min(windows, count) + 1).round().astype(int)
     longest = int(np.diff(edges).max())
     steps = np.arange(longest)
     first, last = edges[:-1, None], edges[1:, None]
-    return Windows(
+    return TimeWindows(
         tuple(f"{record.time[a]:.3g} s to {record.time[b - 1]:.3g} s" for a, b in pairwise(edges)),
         np.minimum(first + steps, last - 1),
         first + steps >= last,
     )
 
 
-def _ranked(windows: Windows) -> list[str]:
+def _ranked(windows: TimeWindows) -> list[str]:
     """Names of the results of all windows, the worst sample first."""
     words = ["", *(", next" if k == 1 else f", next {k}" for k in range(1, RANKS))]
     return [label + word for label in windows.labels for word in words]

@@ -16,14 +16,14 @@ from ...base.dataclass import dataclass
 from ...base.numeric import STEP, Array, absolute, maximum, real, sqrt, where
 from ...base.symbolic.recorded import RecordedFunction
 from ...models import lines, linkage, quasi_static
-from .numbers import SHARES, Plan
+from .numbers import SHARES, SamplePlan
 
 PASSES = 2
 """Passes for friction, which depends on the pressures, and pressures, which depend on friction."""
 
 
 def sample(
-    plan: Plan, u: Mapping[str, Array], s: Mapping[str, Array], *, linked: bool
+    plan: SamplePlan, u: Mapping[str, Array], s: Mapping[str, Array], *, linked: bool
 ) -> dict[str, Array]:
     """Forces, pressures and flows at a sample; all arguments broadcast.
 
@@ -83,7 +83,9 @@ def sample(
 class _Move:
     """A motion with its load: direction, chambers, edges, and force against the motion."""
 
-    def __init__(self, plan: Plan, u: Mapping[str, Array], force: Array, speed: Array) -> None:
+    def __init__(
+        self, plan: SamplePlan, u: Mapping[str, Array], force: Array, speed: Array
+    ) -> None:
         self.force, self.speed = force, speed
         self.extending = real(speed) >= 0
         areas = u["area_a"], u["area_b"]
@@ -117,7 +119,7 @@ class _Balance(NamedTuple):
     frictions: list[Array]
 
 
-def _balanced(plan: Plan, u: Mapping[str, Array], move: _Move, supply: Array) -> _Balance:
+def _balanced(plan: SamplePlan, u: Mapping[str, Array], move: _Move, supply: Array) -> _Balance:
     """Pressures and friction, which depend on each other."""
     lines = where(move.extending, move.line_a, move.line_b)
     others = where(move.extending, move.line_b, move.line_a)
@@ -163,7 +165,7 @@ def _kinematics(
     return u["arm"] * s["motion"] + u["shift"], u["arm"]
 
 
-def _line_drops(plan: Plan, u: Mapping[str, Array], speed: Array) -> tuple[Array, Array]:
+def _line_drops(plan: SamplePlan, u: Mapping[str, Array], speed: Array) -> tuple[Array, Array]:
     """Pressure drops of the lines of chambers A and B."""
     drops: dict[str, Array] = {"a": 0.0 * speed, "b": 0.0 * speed}
     for chamber, i in plan.lines:
@@ -185,7 +187,7 @@ def _line_drops(plan: Plan, u: Mapping[str, Array], speed: Array) -> tuple[Array
     return drops["a"], drops["b"]
 
 
-def _sealed(plan: Plan, i: int, a: Array, b: Array) -> Array:
+def _sealed(plan: SamplePlan, i: int, a: Array, b: Array) -> Array:
     """Pressure difference across a seal."""
     name = plan.rings[i].name
     if name == "piston":
@@ -201,7 +203,7 @@ def _between(u: Mapping[str, Array], name: str, pressure: Array) -> Array:
 
 
 def _friction(
-    plan: Plan, u: Mapping[str, Array], i: int, a: Array, b: Array, speed: Array
+    plan: SamplePlan, u: Mapping[str, Array], i: int, a: Array, b: Array, speed: Array
 ) -> Array:
     """Friction of a seal against the motion; at rest it must break away."""
     coulomb = _between(u, f"seal{i}.coulomb", _sealed(plan, i, a, b))
@@ -223,7 +225,7 @@ class _Seal:
 
 
 def _leakage(
-    plan: Plan, u: Mapping[str, Array], extending: Array, supply: Array, a: Array, b: Array
+    plan: SamplePlan, u: Mapping[str, Array], extending: Array, supply: Array, a: Array, b: Array
 ) -> Array:
     """Leakage that the supply feeds: past the two shut edges, and across the piston."""
     across = u["piston_leakage"] * absolute(a - b)
@@ -241,7 +243,7 @@ def _leakage(
     return where(extending, out, back) + across
 
 
-def leakage_at_rest(plan: Plan, u: Mapping[str, Array]) -> Array:
+def leakage_at_rest(plan: SamplePlan, u: Mapping[str, Array]) -> Array:
     """Leakage of the valve with blocked ports: each side passes two shut edges in series.
 
     The pressures between the edges are half of supply plus return, as with equal edges.
@@ -257,7 +259,7 @@ FEEDS = ("feed_a", "feed_b")
 
 
 @dataclass(frozen=True)
-class Track:
+class SampleResults:
     """Results of all samples of a cycle, with slopes in every direction.
 
     Arrays are (samples, columns): a column for each design, or for each direction of each design;
@@ -306,7 +308,7 @@ class SampleModel:
     """
 
     def __init__(
-        self, plan: Plan, names: Sequence[str], columns: Sequence[str], linked: bool
+        self, plan: SamplePlan, names: Sequence[str], columns: Sequence[str], linked: bool
     ) -> None:
         self.plan, self.names, self.columns = plan, tuple(names), tuple(columns)
         self.linked = linked
@@ -327,7 +329,7 @@ class SampleModel:
         rows = [xp.broadcast_to(xp.asarray(row), first.shape) for row in results.values()]
         return xp.stack(rows)
 
-    def run(self, numbers: Array, seeds: Array, data: Array) -> Track:
+    def run(self, numbers: Array, seeds: Array, data: Array) -> SampleResults:
         """Results of all samples.
 
         Parameters
@@ -341,7 +343,7 @@ class SampleModel:
             track = self.run(numbers, seeds[:, :, active], data)
             results = np.zeros((*track.values.shape[:3], 1 + len(active)))
             results[..., np.append(True, active)] = track.values
-            return Track(results, self.outputs)
+            return SampleResults(results, self.outputs)
         (count, columns), (width, designs, directions) = data.shape, seeds.shape
         points = np.empty((designs, count, width + columns))
         points[:, :, :width] = numbers.T[:, None]
@@ -367,7 +369,7 @@ class SampleModel:
             for k in np.flatnonzero(outside):
                 results[k] = self._by_numpy(points[k : k + 1], changes[k // count, None])[0]
         results = results.reshape(designs, count, -1, 1 + directions).transpose(1, 2, 0, 3)
-        return Track(results, self.outputs)
+        return SampleResults(results, self.outputs)
 
     def _by_numpy(self, points: Array, changes: Array) -> Array:
         """Results (points, outputs, 1 + directions); changes (designs, inputs, directions)."""

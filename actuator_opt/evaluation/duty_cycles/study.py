@@ -14,7 +14,7 @@ from ..values import plain
 from .force_speed import ForceLimit, force_limits
 from .numbers import CYCLE
 from .results import CycleModels, Place
-from .samples import Track
+from .samples import SampleResults
 
 Trace = npt.NDArray[np.float64]
 
@@ -217,7 +217,7 @@ def _cycle(
     name: str,
     record: CycleRecord,
     time: Trace,
-    track: Track,
+    track: SampleResults,
     results: Mapping[Place, float],
     limits: tuple[ForceLimit, ...],
     repeats: float | None,
