@@ -10,7 +10,7 @@
 #define TEXT(name, result) #name,
 static const char *const NAMES[] = {OPERATIONS(TEXT) "roots"};
 
-enum { LANES = 32 };
+enum { LANES = 32, MOST_SLOPES = 8192 };
 
 #if defined(__GNUC__) && defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
 #define FAST __attribute__((target_clones("arch=x86-64-v3", "default")))
@@ -29,15 +29,19 @@ FAST static void run_lanes(
     for (Py_ssize_t k = 0; k < count; k++) value_of(code + WORDS * k, extra, V, LANES);
 }
 
-FAST static void run_dual_4(
-    const uint16_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D
-) { dual(code, count, extra, V, D, 4); }
-FAST static void run_dual_8(
-    const uint16_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D
-) { dual(code, count, extra, V, D, 8); }
-FAST static void run_dual_16(
-    const uint16_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D
-) { dual(code, count, extra, V, D, 16); }
+#define DUAL(T, L) \
+    FAST static void run_dual_##T##_##L( \
+        const uint16_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D \
+    ) { dual(code, count, extra, V, D, T, L); }
+DUAL(4, 1) DUAL(8, 1) DUAL(12, 1) DUAL(16, 1) DUAL(8, 4) DUAL(12, 4) DUAL(16, 4)
+
+typedef void (*Dual)(const uint16_t *, Py_ssize_t, const int32_t *, double *, double *);
+static Dual dual_of(int T, Py_ssize_t L) {
+    return T == 4 ? run_dual_4_1
+         : T == 8 ? L == 1 ? run_dual_8_1 : run_dual_8_4
+         : T == 12 ? L == 1 ? run_dual_12_1 : run_dual_12_4
+                   : L == 1 ? run_dual_16_1 : run_dual_16_4;
+}
 
 /* ---- a program from Python ---- */
 
@@ -65,21 +69,43 @@ static int refused(const Program *p) {
     return p->inputs > p->slots;
 }
 
-/* values: (points, inputs); results: (points, outputs) */
-static int run_values(const Program *p, const double *values, Py_ssize_t points, double *results) {
-    const Py_ssize_t L = points < 4 ? 1 : LANES; /* a few points: one by one */
+/* Points of which the first inputs are shared by successive points, and results that are summed over
+   successive points. */
+typedef struct {
+    const double *shared, *own, *seeds;
+    Py_ssize_t count, first;            /* points; inputs that are shared */
+    Py_ssize_t sharing, seeded, summed; /* successive points of shared inputs, seeds, results */
+} Points;
+
+/* Write the inputs of the points from `at`, in L lanes; lanes beyond the last point repeat one. */
+static void inputs_to(const Program *p, const Points *x, Py_ssize_t at, Py_ssize_t wide,
+                      double *V, Py_ssize_t L) {
+    const Py_ssize_t rest = p->inputs - x->first;
+    for (Py_ssize_t l = 0; l < L; l++) {
+        const Py_ssize_t from = at + (l < wide ? l : 0);
+        const double *shared = x->shared + from / x->sharing * x->first;
+        for (Py_ssize_t k = 0; k < x->first; k++) V[k * L + l] = shared[k];
+        const double *own = x->own + from * rest;
+        for (Py_ssize_t k = 0; k < rest; k++) V[(x->first + k) * L + l] = own[k];
+    }
+}
+
+/* results: (points/summed, outputs) */
+static int run_values(const Program *p, const Points *x, double *results) {
+    const Py_ssize_t L = x->count < 4 ? 1 : LANES; /* a few points: one by one */
     double *V = calloc(L * (p->slots + p->constant_count), sizeof(double));
     if (V == NULL) return -1;
     constants_to(p, V, (int)L);
-    for (Py_ssize_t first = 0; first < points; first += L) {
-        const Py_ssize_t wide = points - first < L ? points - first : L;
-        for (Py_ssize_t k = 0; k < p->inputs; k++)
-            for (Py_ssize_t l = 0; l < L; l++)
-                V[k * L + l] = values[(first + (l < wide ? l : 0)) * p->inputs + k];
+    for (Py_ssize_t at = 0; at < x->count; at += L) {
+        const Py_ssize_t wide = x->count - at < L ? x->count - at : L;
+        inputs_to(p, x, at, wide, V, L);
         (L == 1 ? run_single : run_lanes)(p->code, p->count, p->extra, V);
-        for (Py_ssize_t l = 0; l < wide; l++)
+        for (Py_ssize_t l = 0; l < wide; l++) {
+            double *row = results + (at + l) / x->summed * p->results;
+            const int begins = (at + l) % x->summed == 0;
             for (Py_ssize_t k = 0; k < p->results; k++)
-                results[(first + l) * p->results + k] = V[(Py_ssize_t)p->outputs[k] * L + l];
+                row[k] = V[(Py_ssize_t)p->outputs[k] * L + l] + (begins ? -0.0 : row[k]);
+        }
     }
     free(V);
     return 0;
@@ -112,27 +138,37 @@ static void follow(const Program *p, uint16_t *code, uint8_t *active) {
     }
 }
 
-/* values: (points, inputs); seeds: (points/sharing, inputs, T), each for `sharing` successive points;
-   results: (points, outputs, 1 + T) */
+/* results: (points/summed, outputs, 1 + T) */
 static int run_slopes(
-    const Program *p, const double *values, const double *seeds, Py_ssize_t points,
-    Py_ssize_t sharing, int T, const int32_t *varies, double *results
+    const Program *p, const Points *x, int T, const int32_t *varies, double *results
 ) {
-    double *V = calloc(p->slots + p->constant_count, sizeof(double));
-    double *D = calloc(p->slots * T, sizeof(double));
+    /* several lanes, if there are enough points and all slots stay in fast memory */
+    const Py_ssize_t L = x->count < 4 || T == 4 || p->slots * T > MOST_SLOPES ? 1 : BLOCK;
+    double *V = calloc(L * (p->slots + p->constant_count), sizeof(double));
+    double *D = calloc(L * p->slots * T, sizeof(double));
+    const Dual computed = dual_of(T, L);
     if (V == NULL || D == NULL) return free(V), free(D), -1;
-    constants_to(p, V, 1);
-    for (Py_ssize_t at = 0; at < points; at++) {
-        memcpy(V, values + at * p->inputs, sizeof(double) * p->inputs);
-        memcpy(D, seeds + at / sharing * p->inputs * T, sizeof(double) * p->inputs * T);
-        (T == 4 ? run_dual_4 : T == 8 ? run_dual_8 : run_dual_16)(
-            p->code, p->count, p->extra, V, D);
+    constants_to(p, V, (int)L);
+    for (Py_ssize_t at = 0, wide; at < x->count; at += wide) {
+        const Py_ssize_t left = x->seeded - at % x->seeded; /* points with the same seeds */
+        wide = x->count - at < L ? x->count - at : L;
+        if (x->seeded > 1 && left < wide) wide = left;
+        inputs_to(p, x, at, wide, V, L);
+        for (Py_ssize_t l = 0; l < L && at % x->seeded == 0; l++) {
+            const double *seed = x->seeds + (at + (l < wide ? l : 0)) / x->seeded * p->inputs * T;
+            for (Py_ssize_t k = 0; k < p->inputs * T; k++) D[k * L + l] = seed[k];
+        }
+        computed(p->code, p->count, p->extra, V, D);
         for (Py_ssize_t k = 0; k < p->results; k++) {
-            double *row = results + (at * p->results + k) * (1 + T);
-            const int32_t slot = p->outputs[k];
-            row[0] = V[slot];
-            if (varies[k]) memcpy(row + 1, D + (size_t)slot * T, sizeof(double) * T);
-            else memset(row + 1, 0, sizeof(double) * T);
+            const Py_ssize_t slot = p->outputs[k];
+            for (Py_ssize_t l = 0; l < wide; l++) {
+                double *row = results + ((at + l) / x->summed * p->results + k) * (1 + T);
+                const int begins = (at + l) % x->summed == 0;
+                row[0] = V[slot * L + l] + (begins ? -0.0 : row[0]); /* -0 adds nothing to 0 */
+                if (begins) memset(row + 1, 0, sizeof(double) * T);
+                if (!varies[k]) continue;
+                for (int t = 0; t < T; t++) row[1 + t] += D[(slot * T + t) * L + l];
+            }
         }
     }
     free(V), free(D);
@@ -217,45 +253,50 @@ static PyObject *checked(PyObject *self, PyObject *args) {
 }
 
 PyDoc_STRVAR(run_doc,
-    "run(program, values, seeds, width, results)\n\n"
-    "Run a checked program for points (points, inputs). Without seeds (width 0), `results` is\n"
-    "(points, outputs). With seeds (points, inputs, width), it is (points, outputs, 1 + width);\n"
-    "width is 4, 8 or 16. Fewer seeds are each for the same number of successive points.");
+    "run(program, shared, first, own, seeds, width, results)\n\n"
+    "Run a checked program for points. The first inputs (groups, first) are each shared by the same\n"
+    "number of successive points; the others are (points, inputs - first). Without seeds (width 0),\n"
+    "`results` is (rows, outputs). With seeds (groups, inputs, width) it is (rows, outputs,\n"
+    "1 + width); width is 4, 8, 12 or 16. Each row is the sum over the same number of successive points.");
+
+/* Number of successive points in each of the parts of a buffer; 0 if they do not fit. */
+static Py_ssize_t successive(Py_ssize_t points, Py_ssize_t size, Py_ssize_t item) {
+    if (item == 0) return size == 0;
+    const Py_ssize_t parts = size / item;
+    if (parts * item != size || (parts == 0) != (points == 0)) return 0;
+    return points == 0 ? 1 : points % parts ? 0 : points / parts;
+}
 
 static PyObject *run(PyObject *self, PyObject *args) {
-    Py_buffer view[3];
-    int width;
-    Py_ssize_t size[3], points = 0, sharing = 1;
+    Py_buffer view[4];
+    int width, valid = 1, failed = 0;
+    Py_ssize_t size[4];
+    Points x = {0};
     Checked *program;
     (void)self;
-    if (!PyArg_ParseTuple(args, "O!y*y*iw*", checked_type, &program, &view[0], &view[1], &width,
-                          &view[2]))
+    if (!PyArg_ParseTuple(args, "O!y*ny*y*iw*", checked_type, &program, &view[0], &x.first, &view[1],
+                          &view[2], &width, &view[3]))
         return NULL;
     const Program *p = &program->p;
-    int valid = 1, failed = 0;
-    for (int k = 0; k < 3; k++) valid &= sized(&view[k], 8, &size[k]);
-    valid = valid && size[0] % p->inputs == 0;
+    for (int k = 0; k < 4; k++) valid &= sized(&view[k], 8, &size[k]);
+    valid = valid && x.first >= 0 && x.first < p->inputs
+         && (width == 0 || width == 4 || width == 8 || width == 12 || width == 16);
     if (valid) {
-        points = size[0] / p->inputs;
-        if (width == 0) valid = size[2] == points * p->results;
-        else {
-            const Py_ssize_t seeds = size[1] / (p->inputs * (width > 0 ? width : 1));
-            valid = (width == 4 || width == 8 || width == 16)
-                 && size[1] == seeds * p->inputs * width && (seeds > 0 || points == 0)
-                 && (points == 0 || points % seeds == 0)
-                 && size[2] == points * p->results * (1 + width);
-            if (valid && points > 0) sharing = points / seeds;
-        }
+        const Py_ssize_t rest = p->inputs - x.first;
+        x.shared = view[0].buf, x.own = view[1].buf, x.seeds = view[2].buf;
+        x.count = size[1] / rest;
+        x.sharing = successive(x.count, size[0], x.first);
+        x.seeded = successive(x.count, size[2], p->inputs * width);
+        x.summed = successive(x.count, size[3], p->results * (1 + width));
+        valid = size[1] == x.count * rest && x.sharing && x.seeded && x.summed;
     }
     if (valid) {
         Py_BEGIN_ALLOW_THREADS
-        failed = width == 0
-            ? run_values(p, view[0].buf, points, view[2].buf)
-            : run_slopes(p, view[0].buf, view[1].buf, points, sharing, width, program->varies,
-                         view[2].buf);
+        failed = width == 0 ? run_values(p, &x, view[3].buf)
+                            : run_slopes(p, &x, width, program->varies, view[3].buf);
         Py_END_ALLOW_THREADS
     }
-    for (int k = 0; k < 3; k++) PyBuffer_Release(&view[k]);
+    for (int k = 0; k < 4; k++) PyBuffer_Release(&view[k]);
     if (!valid) return PyErr_SetString(PyExc_ValueError, "not the points of the program"), NULL;
     if (failed) return PyErr_NoMemory();
     Py_RETURN_NONE;
@@ -304,11 +345,10 @@ static void prepared_slopes(Prepared *own) {
     const Program *p = &own->program->p;
     for (Py_ssize_t first = 0; first < own->width; first += 16) {
         const Py_ssize_t left = own->width - first, used = left < 16 ? left : 16;
-        const int T = used <= 4 ? 4 : used <= 8 ? 8 : 16;
+        const int T = used <= 4 ? 4 : used <= 8 ? 8 : used <= 12 ? 12 : 16;
         memset(own->D, 0, sizeof(double) * p->inputs * T);
         for (Py_ssize_t t = 0; t < used; t++) own->D[own->columns[first + t] * T + t] = 1.0;
-        (T == 4 ? run_dual_4 : T == 8 ? run_dual_8 : run_dual_16)(
-            p->code, p->count, p->extra, own->V, own->D);
+        dual_of(T, 1)(p->code, p->count, p->extra, own->V, own->D);
         for (Py_ssize_t k = 0; k < p->results; k++) {
             if (!own->program->varies[k]) continue;
             const double *row = own->D + (size_t)p->outputs[k] * T;

@@ -28,6 +28,13 @@
 #endif
 #endif
 
+/* A result may stand in the slot of its operand, but lanes and directions do not mix. */
+#if defined(__GNUC__) && !defined(__CUDACC_RTC__)
+#define APART _Pragma("GCC ivdep")
+#else
+#define APART
+#endif
+
 /* Operations with their results, computed from operands a, b and c. */
 #define OPERATIONS(X) \
     X(add, a + b) X(sub, a - b) X(mul, a * b) X(div, a / b) X(neg, -a) X(sqrt, sqrt(a)) \
@@ -211,7 +218,7 @@ FUNCTION void roots_of(const uint16_t *at, const double *p, double *R, size_t st
 
 #define VALUES(name, result) \
     case OP_##name: \
-        for (int l = 0; l < L; l++) { \
+        APART for (int l = 0; l < L; l++) { \
             const double a = A[l], b = B[l], c = C[l]; \
             (void)b, (void)c, R[l] = (result); \
         } \
@@ -234,95 +241,98 @@ INLINE void value_of(const uint16_t *at, const int32_t *extra, double *V, const 
 
 /* ---- derivatives ---- */
 
-#define ALONG for (int t = 0; t < T; t++)
-
-/* r' = f a' */
-INLINE void scaled(double *R, const double *A, double f, const int T) { ALONG R[t] = f * A[t]; }
+enum { BLOCK = 4 }; /* most lanes with derivatives */
+#define LANES_OF APART for (int l = 0; l < L; l++)
+#define ALONG for (int t = 0; t < T; t++) LANES_OF
 
 /* r' = f a' + g b', where an operand without derivatives counts as constant */
 INLINE void combined(
-    double *R, const double *A, const double *B, double f, double g, int flags, const int T
+    double *R, const double *A, const double *B, const double *f, const double *g, int flags,
+    const int T, const int L
 ) {
-    if ((flags & (FIRST | SECOND)) == (FIRST | SECOND)) ALONG R[t] = f * A[t] + g * B[t];
-    else if (flags & FIRST) scaled(R, A, f, T);
-    else scaled(R, B, g, T);
+    if ((flags & (FIRST | SECOND)) == (FIRST | SECOND))
+        ALONG R[t * L + l] = f[l] * A[t * L + l] + g[l] * B[t * L + l];
+    else if (flags & FIRST) ALONG R[t * L + l] = f[l] * A[t * L + l];
+    else ALONG R[t * L + l] = g[l] * B[t * L + l];
 }
 
-/* Compute the value and derivatives of every instruction's result, along T directions. */
+#define SLOPE(name, first) case OP_##name: LANES_OF f[l] = (first); break;
+#define SLOPES(name, first, second) case OP_##name: LANES_OF f[l] = (first), g[l] = (second); break;
+
+/* Compute the value and derivatives of every instruction's result, along T directions in L lanes. */
 INLINE void dual(
-    const uint16_t *code, ptrdiff_t count, const int32_t *extra, double *V, double *D, const int T
+    const uint16_t *code, ptrdiff_t count, const int32_t *extra, double *V, double *D,
+    const int T, const int L
 ) {
+    double a[BLOCK], b[BLOCK], f[BLOCK], g[BLOCK] = {0};
     for (ptrdiff_t k = 0; k < count; k++) {
         const uint16_t *at = code + WORDS * k;
-        const int flags = FLAGS(at);
+        const int flags = FLAGS(at), operation = OPERATION(at);
         if (!(flags & RESULT)) {
-            value_of(at, extra, V, 1);
+            value_of(at, extra, V, L);
             continue;
         }
-        const double a = V[at[2]], b = V[at[3]];
-        double *R = D + (size_t)at[1] * T;
-        const double *A = D + (size_t)at[2] * T, *B = D + (size_t)at[3] * T;
-        switch (OPERATION(at)) { /* the most frequent operations first, in one step */
+        double *r = V + (size_t)at[1] * L, *R = D + (size_t)at[1] * T * L;
+        const double *A = D + (size_t)at[2] * T * L, *B = D + (size_t)at[3] * T * L;
+        LANES_OF a[l] = V[(size_t)at[2] * L + l], b[l] = V[(size_t)at[3] * L + l];
+        switch (operation) { /* the most frequent operations first, in one step */
             case OP_mul:
-                V[at[1]] = a * b;
-                combined(R, A, B, b, a, flags, T);
+                LANES_OF r[l] = a[l] * b[l];
+                combined(R, A, B, b, a, flags, T, L);
                 continue;
             case OP_add:
-                V[at[1]] = a + b;
-                combined(R, A, B, 1.0, 1.0, flags, T);
+                LANES_OF r[l] = a[l] + b[l], f[l] = 1.0;
+                combined(R, A, B, f, f, flags, T, L);
                 continue;
             case OP_sub:
-                V[at[1]] = a - b;
-                combined(R, A, B, 1.0, -1.0, flags, T);
+                LANES_OF r[l] = a[l] - b[l], f[l] = 1.0, g[l] = -1.0;
+                combined(R, A, B, f, g, flags, T, L);
                 continue;
-            case OP_div: {
-                const double r = a / b;
-                V[at[1]] = r;
-                combined(R, A, B, 1.0 / b, -r / b, flags, T);
+            case OP_div:
+                LANES_OF r[l] = a[l] / b[l], f[l] = 1.0 / b[l], g[l] = -r[l] / b[l];
+                combined(R, A, B, f, g, flags, T, L);
                 continue;
-            }
             case OP_where: {
-                const int chosen = a != 0 ? at[3] : at[4];
-                V[at[1]] = V[chosen];
-                if (flags & (a != 0 ? SECOND : THIRD)) {
-                    const double *C = D + (size_t)chosen * T;
-                    ALONG R[t] = C[t];
-                } else ALONG R[t] = 0.0;
+                const double *c = V + (size_t)at[4] * L, *C = D + (size_t)at[4] * T * L;
+                LANES_OF r[l] = a[l] != 0 ? b[l] : c[l];
+                if ((flags & SECOND) && (flags & THIRD))
+                    ALONG R[t * L + l] = a[l] != 0 ? B[t * L + l] : C[t * L + l];
+                else if (flags & SECOND) ALONG R[t * L + l] = a[l] != 0 ? B[t * L + l] : 0.0;
+                else ALONG R[t * L + l] = a[l] != 0 ? 0.0 : C[t * L + l];
                 continue;
             }
             default: break;
         }
-        value_of(at, extra, V, 1);
-        const double r = V[at[1]];
-        switch (OPERATION(at)) {
-            case OP_pow:
-                combined(R, A, B, b * pow(a, b - 1.0), flags & SECOND ? r * log(a) : 0.0, flags, T);
-                break;
-            case OP_atan2: {
-                const double size = a * a + b * b;
-                combined(R, A, B, b / size, -a / size, flags, T);
-                break;
-            }
-            case OP_copysign: scaled(R, A, signbit(a) == signbit(b) ? 1.0 : -1.0, T); break;
-            case OP_hypot: combined(R, A, B, a / r, b / r, flags, T); break;
-            case OP_neg: scaled(R, A, -1.0, T); break;
-            case OP_sqrt: scaled(R, A, 0.5 / r, T); break;
-            case OP_exp: scaled(R, A, r, T); break;
-            case OP_expm1: scaled(R, A, exp(a), T); break;
-            case OP_log: scaled(R, A, 1.0 / a, T); break;
-            case OP_log1p: scaled(R, A, 1.0 / (1.0 + a), T); break;
-            case OP_sin: scaled(R, A, cos(a), T); break;
-            case OP_cos: scaled(R, A, -sin(a), T); break;
-            case OP_tan: scaled(R, A, 1.0 + r * r, T); break;
-            case OP_tanh: scaled(R, A, 1.0 - r * r, T); break;
-            case OP_sinh: scaled(R, A, cosh(a), T); break;
-            case OP_cosh: scaled(R, A, sinh(a), T); break;
-            case OP_arctan: scaled(R, A, 1.0 / (1.0 + a * a), T); break;
-            case OP_arcsin: scaled(R, A, 1.0 / sqrt(1.0 - a * a), T); break;
-            case OP_arccos: scaled(R, A, -1.0 / sqrt(1.0 - a * a), T); break;
-            case OP_abs: scaled(R, A, sign_of(a), T); break;
-            case OP_cbrt: scaled(R, A, 1.0 / (3.0 * r * r), T); break;
-            default: ALONG R[t] = 0.0; /* steps: their slope is zero */
+        value_of(at, extra, V, L);
+        switch (operation) {
+            SLOPES(pow, b[l] * pow(a[l], b[l] - 1.0), flags & SECOND ? r[l] * log(a[l]) : 0.0)
+            SLOPES(atan2, b[l] / (a[l] * a[l] + b[l] * b[l]), -a[l] / (a[l] * a[l] + b[l] * b[l]))
+            SLOPES(hypot, a[l] / r[l], b[l] / r[l])
+            SLOPE(neg, -1.0)
+            SLOPE(sqrt, 0.5 / r[l])
+            SLOPE(exp, r[l])
+            SLOPE(expm1, exp(a[l]))
+            SLOPE(log, 1.0 / a[l])
+            SLOPE(log1p, 1.0 / (1.0 + a[l]))
+            SLOPE(sin, cos(a[l]))
+            SLOPE(cos, -sin(a[l]))
+            SLOPE(tan, 1.0 + r[l] * r[l])
+            SLOPE(tanh, 1.0 - r[l] * r[l])
+            SLOPE(sinh, cosh(a[l]))
+            SLOPE(cosh, sinh(a[l]))
+            SLOPE(arctan, 1.0 / (1.0 + a[l] * a[l]))
+            SLOPE(arcsin, 1.0 / sqrt(1.0 - a[l] * a[l]))
+            SLOPE(arccos, -1.0 / sqrt(1.0 - a[l] * a[l]))
+            SLOPE(abs, sign_of(a[l]))
+            SLOPE(cbrt, 1.0 / (3.0 * r[l] * r[l]))
+            case OP_copysign:
+                LANES_OF f[l] = signbit(a[l]) == signbit(b[l]) ? 1.0 : -1.0;
+                combined(R, A, B, f, f, flags & ~SECOND, T, L);
+                continue;
+            default: /* steps: their slope is zero */
+                ALONG R[t * L + l] = 0.0;
+                continue;
         }
+        combined(R, A, B, f, g, flags, T, L);
     }
 }

@@ -32,13 +32,15 @@ MACHINE: Final = Path(__file__).with_name("machine.h")
 """Text of the machine, without its Python module."""
 SCRIPT: Final = Path(__file__).with_name("machine.js")
 """The same machine in JavaScript, for pages; it takes `Program.for_page`."""
-WIDTHS: Final = (4, 8, 16)
+WIDTHS: Final = (4, 8, 12, 16)
 """Numbers of directions for which the virtual machine can compute derivatives in one run."""
 SHARED: Final = ("real", "part")
 """Operations that compute nothing new: the value of the operand without its derivatives, and one of
 the computed roots of a polynomial. Their value is in the slot of their operand."""
 MOST_SLOTS: Final = 2**16
 """Largest number of slots that an instruction can name."""
+NOTHING: Final = np.empty((0, 0, 0))
+"""No shared inputs, or no seeds, of `Program.duals`."""
 _FROZEN: Final = 16
 """Flag of an instruction whose first operand counts as a constant, without derivative; the flag of
 the second operand is twice this number, that of the third four times."""
@@ -80,10 +82,7 @@ class Program:
 
     def values(self, points: Array) -> Array:
         """Outputs (points, outputs) at points (points, inputs)."""
-        results = np.empty((len(points), len(self.outputs)))
-        points = np.ascontiguousarray(points, dtype=float)
-        _MACHINE.run(self._runnable(None), points, np.empty(0), 0, results)
-        return results
+        return self.duals(NOTHING, points, NOTHING)[:, :, 0]
 
     def require_valid(self) -> None:
         """Raise `ValueError` if the program would use memory outside its slots."""
@@ -120,24 +119,44 @@ class Program:
         Parameters
         ----------
         points : inputs of every point, (points, inputs)
-        seeds : change of every input in every direction, (points, inputs, directions); fewer seeds
-            are each for the same number of successive points
+        seeds : change of every input in every direction, (points, inputs, directions)
         """
+        results = self.duals(NOTHING, points, seeds)
+        return results[:, :, 0], results[:, :, 1:]
+
+    def duals(self, shared: Array, own: Array, seeds: Array, rows: int | None = None) -> Array:
+        """Outputs and their slopes (rows, outputs, 1 + directions); outputs come first.
+
+        Parameters
+        ----------
+        shared : the first inputs (groups, inputs), each for the same number of successive points
+        own : the other inputs of every point, (points, inputs)
+        seeds : change of every input in every direction (groups, inputs, directions), each for the
+            same number of successive points; empty: values only
+        rows : number of rows, each the sum over the same number of successive points; None: one for
+            every point
+        """
+        directions = seeds.shape[2]
+        size = (len(own) if rows is None else rows, len(self.outputs))
+        shared, own = (np.ascontiguousarray(part, dtype=float) for part in (shared, own))
+        if not directions:
+            results = np.empty((*size, 1))
+            _MACHINE.run(
+                self._runnable(None), shared, shared.shape[1], own, np.empty(0), 0, results
+            )
+            return results
         runnable = self._runnable(seeds.any(axis=(0, 2)))
-        points = np.ascontiguousarray(points, dtype=float)
-        count, inputs, directions = seeds.shape
-        parts, values = [], np.empty(0)
-        for first in range(0, max(directions, 1), WIDTHS[-1]):
+        parts: list[Array] = []
+        for first in range(0, directions, WIDTHS[-1]):
             part = seeds[:, :, first : first + WIDTHS[-1]]
             used = part.shape[2]
             width = next(width for width in WIDTHS if width >= used)
-            padded = np.zeros((count, inputs, width))
+            padded = np.zeros((*part.shape[:2], width))
             padded[:, :, :used] = part
-            results = np.empty((len(points), len(self.outputs), 1 + width))
-            _MACHINE.run(runnable, points, padded, width, results)
-            values = results[:, :, 0]
-            parts.append(results[:, :, 1 : 1 + used])
-        return values, parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
+            results = np.empty((*size, 1 + width))
+            _MACHINE.run(runnable, shared, shared.shape[1], own, padded, width, results)
+            parts.append(results[:, :, 1 if parts else 0 : 1 + used])
+        return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
 
     def repeated(
         self, point: Array, states: int, columns: Sequence[int] | None = None

@@ -78,6 +78,47 @@ class RecordedFunction:
             return np.empty((self.recording.rows, 0), points.dtype)
         return self._slopes(points) if np.iscomplexobj(points) else self._values(points)
 
+    def duals(self, shared: Array, own: Array, seeds: Array, rows: int | None = None) -> Array:
+        """Results with their slopes (rows, results, 1 + directions), see `Program.duals`."""
+        active = seeds.any(axis=(0, 1))
+        if 0 < active.sum() < len(active):  # the other directions change nothing
+            some = self.duals(shared, own, seeds[:, :, active], rows)
+            results = np.zeros((*some.shape[:2], 1 + len(active)))
+            results[:, :, np.append(True, active)] = some
+            return results
+        if not self.reason and self.recording is None and len(own):
+            self._record(np.concatenate([shared[0], own[0]]))
+        recording = self.recording
+        count = len(own) if rows is None else rows
+        if recording is not None and programs.AVAILABLE:
+            whole = len(recording.program.outputs) == recording.rows  # without guards
+            results = recording.program.duals(shared, own, seeds, count if whole else None)
+            if whole:
+                return results
+            outside = np.flatnonzero(~recording.holds(results[:, :, 0]))
+            results = results[:, : recording.rows]
+            if len(outside):
+                results[outside] = self._by_function(shared, own, seeds, outside)
+        else:
+            results = self._by_function(shared, own, seeds, np.arange(len(own)))
+        if count == len(own):
+            return results
+        return results.reshape(count, -1, *results.shape[1:]).sum(axis=1)
+
+    def _by_function(self, shared: Array, own: Array, seeds: Array, points: Array) -> Array:
+        """The same by the function itself, at some of the points."""
+        group = points * len(shared) // max(len(own), 1)
+        values = np.concatenate([shared[group], own[points]], axis=1)
+        directions = seeds.shape[2]
+        with np.errstate(all="ignore"):
+            if not directions:
+                return self.function(values.T).T[:, :, None]
+            steps = seeds[points * len(seeds) // max(len(own), 1)]
+            stepped = (values[:, :, None] + 1j * STEP * steps).transpose(1, 0, 2)
+            rows = self.function(stepped.reshape(len(stepped), -1))
+        rows = rows.reshape(len(rows), len(points), directions).transpose(1, 0, 2)
+        return np.concatenate([rows.real[:, :, :1], rows.imag / STEP], axis=2)
+
     def confirmed(
         self, points: Array, expected: Array | None = None, floor: float | Array = 1.0
     ) -> bool:

@@ -13,25 +13,52 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...base.numeric import STEP, Array
+from ...base.numeric import Array
+from ...base.symbolic.recorded import RecordedFunction
 from ...models import endurance, rainflow
 from .numbers import LIFE, STRESS, History, SamplePlan
 
 if TYPE_CHECKING:
+    from .results import NearSamples
     from .samples import SampleResults
 
-
+Rows = npt.NDArray[np.intp]
 MOST_KNOWN = 1000
 """Orders of reversals whose pairs are kept."""
+_LOCAL = ("largest", "smallest", *STRESS)
+"""Inputs of the damage of a counted cycle: the ends of the load, and the numbers of the part."""
 
 
 class _Counted(NamedTuple):
-    """Shares of the full pulse at the ends of counted cycles, (loads, cycles, columns)."""
+    """Samples at the ends of the counted cycles of a duty cycle."""
+
+    outputs: Rows
+    """Output that is the load at every sample (loads, samples, designs)."""
+    largest: Rows
+    """(loads, cycles, designs)"""
+    smallest: Rows
+    count: Array
+    """1, or 0 where a load has fewer cycles than another."""
+    highest: Rows
+    """Samples of the largest and of the smallest load (loads, 1, designs)."""
+    lowest: Rows
+
+    @property
+    def rows(self) -> tuple[Rows, ...]:
+        """All samples."""
+        return self.largest, self.smallest, self.highest, self.lowest
+
+
+class _Ends(NamedTuple):
+    """Load as a share of its full pulse at both ends of counted cycles, with slopes.
+
+    Arrays are (loads, cycles, designs, 1 + directions).
+    """
 
     largest: Array
     smallest: Array
     count: Array
-    """Number of times each occurs in a life; 0 fills up the cycles of a load."""
+    """Number of times each occurs in a life."""
 
 
 class CycleFatigue:
@@ -42,79 +69,137 @@ class CycleFatigue:
     plan : structure of the design
     cycles : names of the cycles with a stated number of repeats
     rows : row of every number by name
+    outputs : names of the results of a sample
 
     Attributes
     ----------
     keys : (cycle, "damage", part) of every result; the cycle is "" for the whole life
     """
 
-    def __init__(self, plan: SamplePlan, cycles: Sequence[str], rows: Mapping[str, int]) -> None:
-        self.cycles, self._rows = tuple(cycles), rows
+    def __init__(
+        self,
+        plan: SamplePlan,
+        cycles: Sequence[str],
+        rows: Mapping[str, int],
+        outputs: Sequence[str],
+    ) -> None:
+        self.cycles, self._rows, self._outputs = tuple(cycles), rows, tuple(outputs)
         self._known: dict[bytes, tuple[Array, Array]] = {}
         parts = sorted(enumerate(plan.parts if cycles else ()), key=lambda pair: pair[1].bolted)
         self._loads: tuple[History, ...] = tuple(dict.fromkeys(part.load for _, part in parts))
         self._load = np.array([self._loads.index(part.load) for _, part in parts], dtype=np.intp)
         self._tension = np.array([part.only_tension for _, part in parts], dtype=bool)
         self._metal = sum(not part.bolted for _, part in parts)
-        self._stress = {
-            key: [rows[f"part{i}.{key}"] for i, _ in parts[: self._metal]] for key in STRESS
-        }
+        self._stress = [
+            [rows[f"part{i}.{key}"] for i, _ in parts[: self._metal]] for key in STRESS
+        ]
         self._life = [rows[f"part{i}.life"] for i, _ in parts[self._metal :]]
         words = (*self.cycles, "") if parts else ()
         self.keys = [(cycle, "damage", part.place) for cycle in words for _, part in parts]
+        self._damage_of = RecordedFunction(_damage_of, _LOCAL, np.ones(len(_LOCAL)))
 
-    def damages(self, numbers: Array, tracks: Mapping[str, SampleResults]) -> Array:
-        """Miner's sums (keys, columns) at numbers (numbers, columns)."""
-        if not self.keys:
-            return np.zeros((len(self.keys), numbers.shape[1]))
-        loads = {
-            name: [self._history(load, numbers, tracks[name]) for load in self._loads]
-            for name in self.cycles
-        }
-        designs = next(iter(tracks.values())).shape[0]
-        blocks = [
-            self._damage(numbers, self._counted(name, loads[name], numbers, tracks[name]), designs)
-            for name in self.cycles
-        ]
-        total = sum(blocks)
-        if len(self.cycles) > 1:
-            total = total + self._damage(numbers, self._changes(loads, numbers), designs)
-        return np.concatenate([*blocks, total])
+    def counted(self, tracks: Mapping[str, SampleResults]) -> dict[str, _Counted]:
+        """The counted cycles of every duty cycle of the life."""
+        return {name: self._counted(tracks[name]) for name in self.cycles if self.keys}
 
-    def _counted(
-        self, name: str, shares: Sequence[Array], numbers: Array, track: SampleResults
-    ) -> _Counted:
-        """Counted cycles of a duty cycle, and those of its starts, for each load."""
-        repeats, starts = (numbers[self._rows[f"{name}|{key}"]] for key in LIFE)
-        share = np.stack(shares)  # (loads, samples, columns)
-        loads, columns, width = len(shares), share.shape[2], track.shape[1]
-        levels = share.real[:, :, ::width].transpose(1, 0, 2)
-        pairs = self._pairs(levels.reshape(len(levels), -1))
+    def _counted(self, track: SampleResults) -> _Counted:
+        samples, _, designs = track.values.shape
+        outputs = np.empty((len(self._loads), samples, designs), dtype=np.intp)
+        for k, load in enumerate(self._loads):
+            if load == "middle":
+                x = track.real("position")
+                behind = x > (x.max(axis=0) + x.min(axis=0)) / 2
+                a, b = (self._outputs.index(f"pulse_{chamber}") for chamber in "ab")
+                outputs[k] = np.where(behind, a, b)
+            else:
+                outputs[k] = self._outputs.index(f"pulse_{load}")
+        levels = track.values[np.arange(samples)[:, None], outputs, np.arange(designs)]
+        pairs = self._pairs(levels.transpose(1, 0, 2).reshape(samples, -1))
 
-        def spread(values: Array) -> Array:
-            """Values (cycles, loads x designs) as (loads, cycles, columns)."""
-            wide = values.reshape(len(values), loads, -1).transpose(1, 0, 2)
-            return np.repeat(wide, width, axis=2) if width > 1 else wide
+        def by_load(values: Array) -> Array:
+            return values.reshape(len(values), len(self._loads), designs).transpose(1, 0, 2)
 
-        largest, smallest = (
-            np.take_along_axis(share, spread(at), axis=1) for at in (pairs.largest, pairs.smallest)
-        )
-        high, low = _ends(share)
-        peak: Array = np.where(np.abs(high.real) >= np.abs(low.real), high, low)
-        up = np.where(peak.real > 0, peak, 0.0)
-        begun = np.broadcast_to(starts, (loads, 1, columns))
         return _Counted(
-            np.concatenate([largest, up], axis=1),
-            np.concatenate([smallest, peak - up], axis=1),
-            np.concatenate([spread(pairs.count) * repeats, begun], axis=1),
+            outputs,
+            *map(by_load, (pairs.largest, pairs.smallest, pairs.count)),
+            np.argmax(levels, axis=1)[:, None],
+            np.argmin(levels, axis=1)[:, None],
         )
 
-    def _changes(self, loads: Mapping[str, Sequence[Array]], numbers: Array) -> _Counted:
+    def damages(
+        self,
+        values: Array,
+        seeds: Array,
+        counted: Mapping[str, _Counted],
+        near: Mapping[str, NearSamples],
+        wanted: Array,
+    ) -> Array:
+        """Miner's sums with slopes (keys, designs, 1 + directions).
+
+        With directions there is one design. Results that are not wanted may be 0.
+
+        Parameters
+        ----------
+        values, seeds : numbers (numbers, designs), and their changes in every direction
+        counted, near : the counted cycles, and the samples at their ends with slopes
+        """
+        numbers = np.concatenate([values[:, :, None], seeds], axis=2)
+        ends = {name: self._at(counted[name], near[name]) for name in self.cycles}
+        own = [self._with_starts(name, *ends[name], numbers) for name in self.cycles]
+        whole = [*own]
+        if len(self.cycles) > 1:
+            whole.append(self._changes([x[1] for x in ends.values()], numbers))
+        parts = len(self._load)
+        blocks = [
+            self._damage(numbers, cycles)
+            if wanted[k * parts : (k + 1) * parts].any()
+            else np.zeros((parts, *numbers.shape[1:]))
+            for k, cycles in enumerate(own)
+        ]
+        joined = _Ends(*(np.concatenate(part, axis=1) for part in zip(*whole, strict=True)))
+        return np.concatenate([*blocks, self._damage(numbers, joined)])
+
+    def _at(self, counted: _Counted, near: NearSamples) -> tuple[_Ends, _Ends]:
+        """The counted cycles, and the largest and the smallest load; counts are shares."""
+        designs = np.arange(counted.outputs.shape[2])
+        loads = np.arange(len(self._loads))[:, None, None]
+
+        def ends(largest: Rows, smallest: Rows, count: Array) -> _Ends:
+            high, low = (
+                near.at(counted.outputs[loads, rows, designs], rows) for rows in (largest, smallest)
+            )
+            return _Ends(high, low, count)
+
+        one = np.ones(counted.highest.shape)
+        return (
+            ends(counted.largest, counted.smallest, counted.count),
+            ends(counted.highest, counted.lowest, one),
+        )
+
+    def _with_starts(self, name: str, cycles: _Ends, ends: _Ends, numbers: Array) -> _Ends:
+        """Counted cycles of a duty cycle in a life, and those of its starts."""
+        repeats, starts = (numbers[self._rows[f"{name}|{key}"]] for key in LIFE)
+        high, low = ends.largest, ends.smallest
+        peak = np.where(np.abs(high[..., :1]) >= np.abs(low[..., :1]), high, low)
+        up = np.where(peak[..., :1] > 0, peak, 0.0)
+        return _Ends(
+            np.concatenate([cycles.largest, up], axis=1),
+            np.concatenate([cycles.smallest, peak - up], axis=1),
+            np.concatenate(
+                [cycles.count[..., None] * repeats, ends.count[..., None] * starts], axis=1
+            ),
+        )
+
+    def _changes(self, ends: Sequence[_Ends], numbers: Array) -> _Ends:
         """Cycles from the smallest to the largest load of all duty cycles, one for every start."""
         starts = numbers[[self._rows[f"{name}|starts"] for name in self.cycles]]
-        starts = np.take_along_axis(starts, np.argmax(starts.real, axis=0)[None], axis=0)
-        high, low = _ends(np.concatenate([np.stack(shares) for shares in loads.values()], axis=1))
-        return _Counted(high, low, np.broadcast_to(starts, high.shape))
+        most = np.argmax(starts[..., 0], axis=0)
+        starts = starts[most, np.arange(starts.shape[1])]
+        high = np.concatenate([x.largest for x in ends], axis=1)
+        low = np.concatenate([x.smallest for x in ends], axis=1)
+        high = np.take_along_axis(high, np.argmax(high[..., :1], axis=1)[:, None], axis=1)
+        low = np.take_along_axis(low, np.argmin(low[..., :1], axis=1)[:, None], axis=1)
+        return _Ends(high, low, np.broadcast_to(starts, high.shape))
 
     def _pairs(self, levels: npt.NDArray[np.float64]) -> rainflow.Cycles:
         """Rainflow cycles of histories (samples, designs).
@@ -126,8 +211,10 @@ class CycleFatigue:
         for k in range(levels.shape[1]):
             at = np.flatnonzero(turns[:, k])
             values = levels[at, k]
-            key = at.tobytes() + np.argsort(values, kind="stable").tobytes()
-            if key not in self._known or (values[1:] == values[:-1]).any():
+            order = np.argsort(values, kind="stable")
+            ties = np.diff(values[order]) == 0
+            key = at.tobytes() + order.tobytes() + ties.tobytes()
+            if key not in self._known or np.isnan(values).any():
                 if len(self._known) >= MOST_KNOWN:
                     self._known.clear()
                 pairs = rainflow.repeating_cycles(history=values)
@@ -141,110 +228,77 @@ class CycleFatigue:
             count[: len(pair[0]), k] = 1.0
         return rainflow.Cycles(index[0], index[1], count)
 
-    def _history(self, load: History, numbers: Array, track: SampleResults) -> Array:
-        """The load at all samples as a share of its full pulse (samples, columns)."""
-        if load == "rod":
-            return -track.array("force") / numbers[self._rows["rod_pulse"]]
-        a, b = track.array("pressure_a"), track.array("pressure_b")
-        pressure = a if load == "a" else b
-        if load == "middle":
-            x = track.real("position")
-            behind = x > (x.max(axis=0) + x.min(axis=0)) / 2
-            pressure = np.where(np.repeat(behind, track.shape[1], axis=1), a, b)
-        return pressure / numbers[self._rows["supply"]]
-
-    def _damage(self, numbers: Array, counted: _Counted, designs: int) -> Array:
-        """Miner's sums of all parts (parts, columns)."""
-        real = _Counted(*(np.real(x)[..., :: x.shape[-1] // designs] for x in counted))
-        values = np.real(numbers)[:, :: numbers.shape[1] // designs]
-        largest, smallest, count = (x[self._load] for x in real)
+    def _damage(self, numbers: Array, ends: _Ends) -> Array:
+        """Miner's sums of all parts with slopes (parts, designs, 1 + directions)."""
+        largest, smallest, count = (x[..., 0][self._load] for x in ends)
         kept = []
-        for x in (largest, smallest):  # (parts, cycles, designs)
+        for x in (largest, smallest):
             slack = self._tension[:, None, None] & (x < 0)
-            kept.append(~slack)
             x[slack] = 0.0
-        each, by_largest, by_smallest, by_number = self._slopes(largest, smallest, values)
-        total = (count * each).sum(axis=1)
-        if not np.iscomplexobj(numbers):
-            return total
-        shape = (*total.shape, numbers.shape[1] // designs)
-        change = np.zeros(shape)
-        steps = [np.imag(x).reshape(*x.shape[:2], designs, -1) for x in counted]
-        slopes = (count * by_largest * kept[0], count * by_smallest * kept[1], each)
-        for slope, step in zip(slopes, steps, strict=True):
-            if step.any():
-                for load in range(len(self._loads)):
-                    own = self._load == load
-                    change[own] += np.einsum("pcd,cdn->pdn", slope[own], step[load])
-        for rows, first, slope in by_number:
-            step = np.imag(numbers[rows]).reshape(len(rows), designs, -1)
-            change[first : first + len(rows)] += (count[first : first + len(rows)] * slope).sum(
-                axis=1
-            )[:, :, None] * step
-        result = np.repeat(total, shape[2], axis=1).astype(complex)
-        result.imag = change.reshape(len(total), -1)
+            kept.append(~slack)
+        each, slopes, by_number = self._each(largest, smallest, numbers[..., 0])
+        result = np.zeros((len(self._load), *numbers.shape[1:]))
+        result[..., 0] = (count * each).sum(axis=1)
+        if numbers.shape[2] == 1:
+            return result
+        factors = [count[..., 0] * (slope * some)[..., 0] for slope, some in zip(slopes, kept, strict=True)]
+        for load in range(len(self._loads)):
+            parts = np.flatnonzero(self._load == load)
+            change = each[parts, :, 0] @ ends.count[load, :, 0, 1:]
+            for factor, end in zip(factors, (ends.largest, ends.smallest), strict=True):
+                change += factor[parts] @ end[load, :, 0, 1:]
+            result[parts, 0, 1:] = change
+        for rows, parts, slope in by_number:
+            factor = (count[parts] * slope).sum(axis=1)[..., None]
+            result[parts, :, 1:] += factor * numbers[rows, :, 1:]
         return result
 
-    def _slopes(
+    def _each(
         self, largest: Array, smallest: Array, values: Array
-    ) -> tuple[Array, Array, Array, list[tuple[list[int], int, Array]]]:
+    ) -> tuple[Array, tuple[Array, Array], list[tuple[list[int], slice, Array]]]:
         """Damage of every counted cycle (parts, cycles, designs), and its slopes.
 
-        The slopes are by the ends of the cycle, and by the numbers of the parts: rows of the
-        numbers, first part, slope.
+        The slopes are by both ends of the cycle, and by the numbers of the parts: rows of the
+        numbers, parts, slope.
         """
-        metal = slice(self._metal)
-        part = {key: values[rows][:, None] for key, rows in self._stress.items()}
-        span, middle = (largest - smallest)[metal], (largest + smallest)[metal] / 2
-        stress = {
-            "amplitude": part["span"] * span / 2,
-            "mean": part["offset"] + part["slope"] * middle,
-            **{key: part[key] for key in ("ultimate", "limit", "limit_cycles")},
-        }
-        each = _damage_of(stress)
-        slope = {
-            key: _damage_of({**stress, key: stress[key] + 1j * STEP}).imag / STEP for key in stress
-        }
-        swing, shift = slope["amplitude"] * part["span"] / 2, slope["mean"] * part["slope"] / 2
-        by_number = [
-            (self._stress["span"], 0, slope["amplitude"] * span / 2),
-            (self._stress["offset"], 0, slope["mean"]),
-            (self._stress["slope"], 0, slope["mean"] * middle),
-            *((self._stress[key], 0, slope[key]) for key in ("ultimate", "limit", "limit_cycles")),
-        ]
+        metal, bolts = slice(self._metal), slice(self._metal, None)
+        points = np.empty((*largest[metal].shape, len(_LOCAL)))
+        points[..., 0], points[..., 1] = largest[metal], smallest[metal]
+        points[..., 2:] = values[self._stress].transpose(1, 2, 0)[:, None]
+        identity = np.eye(len(_LOCAL))[None]
+        found = self._damage_of.duals(np.empty((1, 0)), points.reshape(-1, len(_LOCAL)), identity)
+        found = found[:, 0].reshape(*points.shape[:-1], -1)
         # the life of a bolt falls with the third power of the load (`endurance.bolt_cycles`)
-        pulse = (largest - smallest)[self._metal :]
+        pulse = (largest - smallest)[bolts]
         life = values[self._life][:, None]
         cube, square = pulse**3 / life, 3 * pulse**2 / life
-        by_number.append((self._life, self._metal, -cube / life))
+        by_number = [(rows, metal, found[..., 3 + k]) for k, rows in enumerate(self._stress)]
+        by_number.append((self._life, bolts, -cube / life))
         return (
-            np.concatenate([each, cube]),
-            np.concatenate([swing + shift, square]),
-            np.concatenate([shift - swing, -square]),
+            np.concatenate([found[..., 0], cube]),
+            (
+                np.concatenate([found[..., 1], square]),
+                np.concatenate([found[..., 2], -square]),
+            ),
             by_number,
         )
 
 
-def _ends(share: Array) -> tuple[Array, Array]:
-    """Largest and smallest values of histories (loads, samples, columns), (loads, 1, columns)."""
-    high, low = (
-        np.take_along_axis(share, at(share.real, axis=1)[:, None], axis=1)
-        for at in (np.argmax, np.argmin)
-    )
-    return high, low
-
-
-def _damage_of(values: dict[str, Array]) -> Array:
-    """Damage of single cycles of stress."""
-    ultimate = values["ultimate"]
-    return 1 / endurance.basquin_cycles(
+def _damage_of(points: Array) -> Array:
+    """Damage of single cycles of stress (1, cycles), from the numbers `_LOCAL` (numbers, cycles)."""
+    largest, smallest, span, offset, slope, ultimate, limit, limit_cycles = points
+    cycles = endurance.basquin_cycles(
         amplitude=endurance.reversed_amplitude(
-            amplitude=values["amplitude"], mean=values["mean"], ultimate_strength=ultimate
+            amplitude=span * (largest - smallest) / 2,
+            mean=offset + slope * (largest + smallest) / 2,
+            ultimate_strength=ultimate,
         ),
         ultimate_strength=ultimate,
-        fatigue_limit=values["limit"],
-        limit_cycles=values["limit_cycles"],
+        fatigue_limit=limit,
+        limit_cycles=limit_cycles,
     )
+    damage: Array = (1 / cycles)[None]
+    return damage
 
 
 def _turns(values: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:

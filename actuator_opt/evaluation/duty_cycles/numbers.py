@@ -34,7 +34,7 @@ from ..values import Values
 Numbers = dict[str, Array]
 SHARES = (0.0, 0.5, 1.0)
 """Sealed pressures at which the contact of a seal is computed, as shares of the supply pressure;
-in between it follows the parabola through these three points."""
+in between it follows the parabola through these three points, see `_parabola`."""
 CYCLE = ("load_scale", "time_scale", "level", "arm", "shift")
 """Numbers of a cycle that its samples need; their names are those of the cycle, a bar, and this."""
 LIFE = ("repeats", "starts")
@@ -281,6 +281,7 @@ def _seals(
     for i, ring in enumerate(seals):
         assert ring.name != "static"
         sealing_ring = ring.groove.path == f"seals.{BLOCKS[ring.name]}."  # others are not pressed
+        levels, contacts = [], []
         for share in SHARES:
             pressed = ring.at(pressure=(share if sealing_ring else 0.0) * supply)
             if ring.name == "piston":
@@ -288,19 +289,30 @@ def _seals(
                 pressed = pressed.at(squeeze_left=pressed["squeeze_left"] - lost)
             contact = rings_module.seal_contact(pressed)
             law = ring.element.friction_law
-            numbers[f"seal{i}.coulomb[{share}]"] = _flat(
-                friction.seal_friction(
-                    line_load=sealing.row_load(pressed, contact),
-                    diameter=ring["diameter"],
-                    friction_coefficient=law.coefficient(pressed.sizes, contact),
-                )
+            level = friction.seal_friction(
+                line_load=sealing.row_load(pressed, contact),
+                diameter=ring["diameter"],
+                friction_coefficient=law.coefficient(pressed.sizes, contact),
             )
-            numbers[f"seal{i}.contact[{share}]"] = _flat(contact.line_load / contact.width)
+            levels.append(_flat(level))
+            contacts.append(_flat(contact.line_load / contact.width))
+        numbers |= _parabola(f"seal{i}.coulomb", levels, supply)
+        numbers |= _parabola(f"seal{i}.contact", contacts, supply)
         for key in ("breakaway_ratio", "stribeck_speed", "viscous_friction"):
             numbers[f"seal{i}.{key}"] = _flat(ring[key])
     others = sealing.wipers_and_guides(v, design, g, resting, sections)
     numbers["other_friction"] = _flat(others.running)
     return seals
+
+
+def _parabola(name: str, values: Sequence[Array], supply: Array) -> Numbers:
+    """Coefficients of the parabola in the pressure through the values at `SHARES` of the supply."""
+    low, middle, high = values
+    return {
+        f"{name}[0]": low,
+        f"{name}[1]": (4 * middle - 3 * low - high) / supply,
+        f"{name}[2]": 2 * (low + high - 2 * middle) / (supply * supply),
+    }
 
 
 class _Stress(NamedTuple):

@@ -8,28 +8,34 @@ windows of time, and the worst two samples of each window are separate results.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from ...base.numeric import STEP, Array, over_time, over_travel
+from ...base.numeric import STEP, Array
 from ...base.quantities import Sense
 from ...design.cycle_record import CycleRecord
-from ...models import heat_transfer, supply_sizing, wear
+from ...models import heat_transfer, supply_sizing
 from ..values import Values
 from .fatigue import CycleFatigue
-from .numbers import CYCLE, Numbers, SamplePlan
-from .samples import SampleModel, SampleResults, complexed, leakage_at_rest
+from .numbers import CYCLE, SamplePlan
+from .samples import (
+    COLUMNS,
+    SEAL_SUMS,
+    SUMS,
+    SampleModel,
+    SampleResults,
+    leakage_at_rest,
+)
 
 WINDOWS = 8
 """Windows of time of all cycles together (our choice). The extremes in each window are separate
 limits of the optimiser."""
-MOST_SAMPLES = 400_000
-"""Samples, counted in every direction of every design, that are computed together: 150 bytes each,
-to bound memory."""
+MOST_SAMPLES = 200_000
+"""Samples of all designs that are computed together, to bound memory."""
 LEAST_WINDOWS = 2
 """Windows of each cycle if there are many cycles."""
 RANKS = 2
@@ -55,6 +61,10 @@ ENDS: Mapping[str, tuple[str, Sense]] = {
     "position_max": ("position", "max"),
 }
 """Extremes of the whole cycle: the piston has a single farthest position."""
+
+
+EXCHANGE = ("exchange_a", "exchange_b")
+"""Flows of fresh oil into the chambers."""
 
 
 class Place(NamedTuple):
@@ -119,32 +129,29 @@ class CycleModels:
         self.plan, self.records, self.names = plan, dict(records), tuple(names)
         self._row = {name: k for k, name in enumerate(names)}
         self.common = tuple(x for x in names if "|" not in x and not x.startswith("part"))
-        lives = [cycle for cycle in records if f"{cycle}|repeats" in self._row]
-        self._fatigue = CycleFatigue(plan, lives, self._row)
+        self._models: dict[tuple[bool, bool], SampleModel] = {}
         count = max(LEAST_WINDOWS, WINDOWS // len(records))
-        self._models: dict[tuple[str | bool, ...], SampleModel] = {}
-        self._cycles: dict[str, _Cycle] = {}
+        self._cycles = {
+            name: self._cycle(name, record, count, (phases or {}).get(name, ()))
+            for name, record in records.items()
+        }
+        repeated = [name for name in records if f"{name}|repeats" in self._row]
+        outputs = next(iter(self._models.values())).outputs
+        self._fatigue = CycleFatigue(plan, repeated, self._row, outputs)
         places: list[Place] = []
-        for name, record in records.items():
-            cycle = self._cycle(name, record, count, (phases or {}).get(name, ()))
-            self._cycles[name] = cycle
+        for name, cycle in self._cycles.items():
             places += [Place(name, *key) for key in cycle.keys]
         places += [Place(*key) for key in self._fatigue.keys]
         self.places = (*places, Place("", "rest_leakage"))
 
     def _cycle(self, name: str, record: CycleRecord, count: int, phases: Sequence[float]) -> _Cycle:
-        columns = [record.motion, record.load, record.speed]
-        titles = ["=motion", "=load", "=rate"]
-        if record.supply_pressure is not None:
-            columns.append(record.supply_pressure)
-            titles.append("=supply")
-        linked = name in self.plan.linked
-        model = self._models.setdefault(
-            (linked, *titles), SampleModel(self.plan, (*self.common, *CYCLE), titles, linked)
-        )
+        kind = (name in self.plan.linked, record.supply_pressure is not None)
+        if kind not in self._models:
+            columns = (*COLUMNS, "supply") if kind[1] else COLUMNS
+            self._models[kind] = SampleModel(self.plan, (*self.common, *CYCLE), columns, kind[0])
         order = [self._row[key] for key in self.common]
         order += [self._row[f"{name}|{key}"] for key in CYCLE]
-        return _Cycle(self.plan, record, model, np.stack(columns, axis=1), order, count, phases)
+        return _Cycle(self.plan, record, self._models[kind], order, count, phases)
 
     def __call__(
         self, points: Array, width: int | None = None, wanted: Array | None = None
@@ -167,52 +174,74 @@ class CycleModels:
                 return np.concatenate(rows, axis=1)
             directions = width
         values = points.real[:, :: max(directions, 1)]
-        seeds = np.zeros((*values.shape, 0))
-        if directions:
-            seeds = points.imag.reshape(*values.shape, directions) / STEP
+        seeds = points.imag.reshape(*values.shape, directions) / STEP if directions else None
         longest = max(len(record.time) for record in self.records.values())
-        most = max(1, MOST_SAMPLES // (longest * (1 + directions)))
+        most = 1 if directions else max(1, MOST_SAMPLES // longest)
+        blocks = []
         with np.errstate(all="ignore"):
-            rows = [
-                self._results(values[:, at : at + most], seeds[:, at : at + most], wanted)
-                for at in range(0, values.shape[1], most)
-            ]
-        return rows[0] if len(rows) == 1 else np.concatenate(rows, axis=1)
+            for at in range(0, values.shape[1], most):
+                part = values[:, at : at + most]
+                seed = np.zeros((*part.shape, 0)) if seeds is None else seeds[:, at : at + most]
+                blocks.append(self._results(part, seed, wanted))
+        duals = np.concatenate(blocks, axis=1)
+        if seeds is None:
+            return duals[:, :, 0]
+        return complexed(duals).reshape(len(duals), -1)
 
     def tracks(self, values: Array) -> dict[str, SampleResults]:
         """Results of all samples of every cycle, at numbers (numbers, designs)."""
-        seeds = np.zeros((*values.shape, 0))
-        return {name: cycle.track(values, seeds) for name, cycle in self._cycles.items()}
+        return {name: cycle.samples(values) for name, cycle in self._cycles.items()}
 
     def _results(self, values: Array, seeds: Array, wanted: Array | None) -> Array:
-        """Results (places, columns) at values (numbers, designs)."""
+        """Results with slopes (places, designs, 1 + directions) at values (numbers, designs).
+
+        With directions there is one design.
+        """
         wanted = np.ones(len(self.places), dtype=bool) if wanted is None else wanted
-        numbers = values
-        if seeds.shape[2]:
-            numbers = (values[:, :, None] + 1j * STEP * seeds).reshape(len(values), -1)
+        ends = np.cumsum([len(cycle.keys) for cycle in self._cycles.values()])
+        parts = dict(zip(self._cycles, np.split(wanted, ends), strict=False))
+        tracks = self.tracks(values)
+        counted = self._fatigue.counted(tracks) if wanted[ends[-1] : -1].any() else {}
         blocks: list[Array] = []
-        tracks: dict[str, SampleResults] = {}
-        first = 0
+        near: dict[str, NearSamples] = {}
         for name, cycle in self._cycles.items():
-            tracks[name] = cycle.track(values, seeds)
-            u = dict(zip((*self.common, *CYCLE), numbers[cycle.order], strict=True))
-            own = wanted[first : first + len(cycle.keys)]
-            blocks.append(cycle.results(u, tracks[name], own))
-            first += len(cycle.keys)
-        u = dict(zip(self.names, numbers, strict=True))
-        if wanted[first:-1].any():
-            blocks.append(self._fatigue.damages(numbers, tracks))
+            more = counted[name].rows if name in counted else ()
+            rows, near[name] = cycle.results(values, seeds, tracks[name], parts[name], more)
+            blocks.append(rows)
+        shape = (values.shape[1], 1 + seeds.shape[2])
+        if counted:
+            some = wanted[ends[-1] : -1]
+            blocks.append(self._fatigue.damages(values, seeds, counted, near, some))
         else:
-            blocks.append(np.zeros((len(self._fatigue.keys), numbers.shape[1])))
-        blocks.append(np.reshape(leakage_at_rest(self.plan, u), (1, -1)))
+            blocks.append(np.zeros((len(self._fatigue.keys), *shape)))
+        u = dict(zip(self.names, stepped(values, seeds), strict=True))
+        rest = np.broadcast_to(leakage_at_rest(self.plan, u), (shape[0] * max(shape[1] - 1, 1),))
+        blocks.append(duals_of(rest[None], shape[0]))
         return np.concatenate(blocks)
 
 
-class _Block(NamedTuple):
-    """Results that are computed together: number of rows, and their function."""
+def stepped(values: Array, seeds: Array) -> Array:
+    """Numbers (numbers, columns), complex if there are directions."""
+    if not seeds.shape[2]:
+        return values
+    complexes: Array = (values[:, :, None] + 1j * STEP * seeds).reshape(len(values), -1)
+    return complexes
 
-    rows: int
-    results: Callable[[Numbers, SampleResults], Array]
+
+def duals_of(rows: Array, designs: int) -> Array:
+    """Values and slopes (rows, designs, 1 + directions) of rows (rows, columns)."""
+    if not np.iscomplexobj(rows):
+        return rows[:, :, None]
+    columns = rows.reshape(len(rows), designs, -1)
+    return np.concatenate([columns.real[:, :, :1], columns.imag / STEP], axis=2)
+
+
+def complexed(part: Array) -> Array:
+    """Values and slopes (..., 1 + directions) as complex numbers (..., directions)."""
+    result = np.empty((*part.shape[:-1], part.shape[-1] - 1), dtype=complex)
+    result.real = part[..., :1]
+    result.imag = STEP * part[..., 1:]
+    return result
 
 
 class _Cycle:
@@ -223,154 +252,248 @@ class _Cycle:
         plan: SamplePlan,
         record: CycleRecord,
         model: SampleModel,
-        data: Array,
         order: Sequence[int],
         count: int,
         phases: Sequence[float],
     ) -> None:
-        self.plan, self.record, self.model, self.phases = plan, record, model, tuple(phases)
-        self.data, self.order = data, list(order)
-        self.extremes = {k: v for k, v in EXTREMES.items() if plan.valve or k != "opening"}
+        self.record, self.model, self.order = record, model, list(order)
+        self._supply = SupplyWeights(record.time, phases)
+        self._data = _data(record)
+        self._wide = np.concatenate([self._data, _neighbours(record)], axis=1)
+        self._turns = turning_points(record.motion)
         self.windows, self.whole = windows_of(record, count), windows_of(record, 1)
         labels = [ring.label for ring in plan.rings]
-        sums = [(name, "") for name in SUMS]
-        seals = [(name, label) for name in SEAL_SUMS for label in labels]
-        extremes = [(name, place) for name in self.extremes for place in _ranked(self.windows)]
-        ends = [(name, place) for name in ENDS for place in _ranked(self.whole)]
-        pv = [("pv", f"{label}|{place}") for label in labels for place in _ranked(self.windows)]
-        self.keys: list[tuple[str, str]] = [*sums, *seals, *extremes, *ends, *pv]
-        self._blocks = (
-            _Block(len(sums), self._sums),
-            _Block(len(seals), self._seal_sums),
-            _Block(
-                len(extremes),
-                lambda u, track: self._worst(self.extremes, self.windows, track),
-            ),
-            _Block(len(ends), lambda u, track: self._worst(ENDS, self.whole, track)),
-            _Block(len(pv), self._pressure_times_speed),
-        )
-
-    def track(self, values: Array, seeds: Array) -> SampleResults:
-        """Results of all samples."""
-        return self.model.run(values[self.order], seeds[self.order], self.data)
-
-    def results(self, u: Numbers, track: SampleResults, wanted: Array) -> Array:
-        """All results (keys, columns); 0 in blocks without a wanted result."""
-        columns = track.shape[0] * track.shape[1]
-        parts = np.split(wanted, np.cumsum([block.rows for block in self._blocks])[:-1])
-        blocks = [
-            block.results(u, track) if part.any() else np.zeros((block.rows, columns))
-            for block, part in zip(self._blocks, parts, strict=True)
+        self._extremes = _extremes(EXTREMES, model.outputs)
+        self._extremes += [
+            (("pv", label), model.outputs.index(f"pv{i}"), -1.0) for i, label in enumerate(labels)
         ]
-        return np.concatenate(blocks)
+        self._ends = _extremes(ENDS, model.outputs)
+        sums = [(name, "") for name in SUMS] + [(name, x) for name in SEAL_SUMS for x in labels]
+        exchange = [(name, "") for name in EXCHANGE]
+        self.keys: list[tuple[str, str]] = [*sums, *exchange]
+        self._sizes = [len(sums), len(exchange)]
+        for extremes, windows in self._blocks:
+            ranked = _ranked(windows)
+            for (name, label), _, _ in extremes:
+                self.keys += [(name, f"{label}|{place}" if label else place) for place in ranked]
+            self._sizes.append(len(extremes) * len(ranked))
 
-    def _sums(self, u: Numbers, track: SampleResults) -> Array:
-        time = self.record.time[:, None] * u["time_scale"]
-        total = self._total_flow(track.array("flow"))
-        most = np.argmax(total.real, axis=0)[None]
-        sums = sums_of(u, time, track) | {
-            "ripple_volume": supply_sizing.ripple_volume(time=time, flow=total).volume,
-            "flow_total": np.take_along_axis(total, most, axis=0)[0],
-        }
-        return np.stack(np.broadcast_arrays(*(sums[name] for name in SUMS)))
+    @property
+    def _blocks(self) -> tuple[tuple[list[Extreme], TimeWindows], ...]:
+        return (self._extremes, self.windows), (self._ends, self.whole)
 
-    def _total_flow(self, flow: Array) -> Array:
-        """Flow of all actuators on the supply; the others run the same cycle later or earlier."""
-        total, time = flow, self.record.time
+    def samples(self, values: Array) -> SampleResults:
+        """Results of all samples at values (all numbers, designs)."""
+        numbers = values[self.order]
+        found = self.model.results(numbers, self._data, np.zeros((*numbers.shape, 0)))
+        return SampleResults(found[..., 0], self.model.outputs)
+
+    def results(
+        self, values: Array, seeds: Array, track: SampleResults, wanted: Array, more: Sequence[Array]
+    ) -> tuple[Array, NearSamples]:
+        """All results (keys, designs, 1 + directions), and the samples of `more` with slopes.
+
+        Results that are not wanted may be 0.
+        """
+        values, seeds = values[self.order], seeds[self.order]
+        sums, exchange, *picked = np.split(wanted, np.cumsum(self._sizes[:-1]))
+        picks = [
+            self._picks(extremes, windows, track, some)
+            for (extremes, windows), some in zip(self._blocks, picked, strict=True)
+        ]
+        rows = [pick.rows for pick in picks] + [*more]
+        if exchange.any():
+            rows.append(self._turns)
+        near = self._near(values, seeds, track, rows)
+        shape = (values.shape[1], 1 + seeds.shape[2])
+        blocks = [
+            self._sums(values, seeds, track, sums)
+            if sums.any()
+            else np.zeros((self._sizes[0], *shape)),
+            self._exchange(values, seeds, near)
+            if exchange.any()
+            else np.zeros((self._sizes[1], *shape)),
+        ]
+        for pick, size in zip(picks, self._sizes[2:], strict=True):
+            block = np.zeros((pick.kept.size, size // max(pick.kept.size, 1), *shape))
+            if len(pick.rows):
+                block[pick.kept] = near.at(pick.outputs[:, None, None], pick.rows)
+            blocks.append(block.reshape(size, *shape))
+        return np.concatenate(blocks), near
+
+    def _picks(
+        self, extremes: Sequence[Extreme], windows: TimeWindows, track: SampleResults, wanted: Array
+    ) -> _Picks:
+        """The samples of the worst values in windows, of the extremes of which any is wanted."""
+        kept = wanted.reshape(len(extremes), -1).any(axis=1)
+        outputs = np.array([output for _, output, _ in extremes])[kept]
+        signs = np.array([sign for _, _, sign in extremes])[kept]
+        if not len(outputs):
+            return _Picks(kept, outputs, np.empty((0, 0, 0), dtype=np.intp))
+        return _Picks(kept, outputs, windows.least(track.values[:, outputs] * signs[:, None]))
+
+    def _near(
+        self, values: Array, seeds: Array, track: SampleResults, rows: Sequence[Array]
+    ) -> NearSamples:
+        """The samples of some rows, with slopes."""
+        count = len(track.values)
+        if not seeds.shape[2]:
+            return NearSamples(track.values[..., None], np.arange(count))
+        marked = np.zeros(count, dtype=bool)
+        for part in rows:
+            marked[part] = True
+        found = self.model.results(values, self._data[marked], seeds)
+        return NearSamples(found, np.cumsum(marked) - 1)
+
+    def _sums(self, values: Array, seeds: Array, track: SampleResults, wanted: Array) -> Array:
+        data = np.empty((values.shape[1], *self._wide.shape))
+        data[:] = self._wide
+        if wanted[[SUMS.index("ripple_volume"), SUMS.index("flow_total")]].any():
+            weights = self._supply.weights(track.real("flow"))
+            data[:, :, -2], data[:, :, -1] = weights.ripple.T, weights.peak.T
+        return self.model.sums(values, data, seeds, wanted)
+
+    def _exchange(self, values: Array, seeds: Array, near: NearSamples) -> Array:
+        """Flow of fresh oil into each chamber: of every stroke, what the line does not hold back.
+
+        All designs turn at the same samples: a lever arm does not change its sign.
+        """
+        u = dict(zip(self.model.names, stepped(values, seeds), strict=True))
+        turns = np.broadcast_to(self._turns[:, None], (len(self._turns), values.shape[1]))
+        x = near.at(self.model.outputs.index("position"), turns)
+        position = (complexed(x) if seeds.shape[2] else x[..., 0]).reshape(len(turns), -1)
+        strokes = position[1:] - position[:-1]
+        duration = (self.record.time[-1] - self.record.time[0]) * u["time_scale"]
+        filling = np.stack([strokes, -strokes])
+        fresh = heat_transfer.exchanged_volume(
+            piston_area=np.stack([u["area_a"], u["area_b"]])[:, None],
+            travel=np.where(filling.real > 0, filling, 0.0),
+            line_volume=np.stack(
+                np.broadcast_arrays(u["line_volume_a"], u["line_volume_b"], duration)[:2]
+            )[:, None],
+        )
+        return duals_of(fresh.sum(axis=1) / duration, values.shape[1])
+
+
+Extreme = tuple[tuple[str, str], int, float]
+"""Name and place of an extreme, its output, and 1 for its least or -1 for its largest value."""
+
+
+def _extremes(
+    extremes: Mapping[str, tuple[str, Sense]], outputs: Sequence[str]
+) -> list[Extreme]:
+    """Extremes of the outputs that there are."""
+    return [
+        ((name, ""), outputs.index(output), 1.0 if sense == "min" else -1.0)
+        for name, (output, sense) in extremes.items()
+        if output in outputs
+    ]
+
+
+class _Picks(NamedTuple):
+    """Samples at which extremes are taken."""
+
+    kept: npt.NDArray[np.bool_]
+    """Whether each extreme is taken."""
+    outputs: npt.NDArray[np.intp]
+    """Outputs of the extremes that are taken."""
+    rows: npt.NDArray[np.intp]
+    """(extremes that are taken, windows and ranks, designs)"""
+
+
+class NearSamples(NamedTuple):
+    """Results with slopes at some samples of a cycle."""
+
+    values: Array
+    """(samples, outputs, designs, 1 + directions)"""
+    places: npt.NDArray[np.intp]
+    """Place of each sample of the cycle among `values`; meaningless for samples left out."""
+
+    def at(self, outputs: Array | int, rows: npt.NDArray[np.intp]) -> Array:
+        """Outputs (..., designs, 1 + directions) at samples (..., designs)."""
+        picked: Array = self.values[self.places[rows], outputs, np.arange(rows.shape[-1])]
+        return picked
+
+
+def _data(record: CycleRecord) -> Array:
+    """Columns of all samples."""
+    columns = [record.motion, record.load, record.speed]
+    if record.supply_pressure is not None:
+        columns.append(record.supply_pressure)
+    return np.stack(columns, axis=1)
+
+
+def _neighbours(record: CycleRecord) -> Array:
+    """Columns `NEIGHBOURS` of all samples, without the weights of the flow."""
+    count = len(record.time)
+    before, after = np.maximum(np.arange(count) - 1, 0), np.minimum(np.arange(count) + 1, count - 1)
+    weight = 0.5 * (record.time[after] - record.time[before])
+    columns = [record.motion[before], record.load[before], record.motion[after], record.load[after]]
+    columns += [weight, weight / weight.sum(), np.zeros(count), np.zeros(count)]
+    return np.stack(columns, axis=1)
+
+
+class _Weights(NamedTuple):
+    """Weights (samples, designs) of the flow of one actuator."""
+
+    ripple: Array
+    peak: Array
+
+
+class SupplyWeights:
+    """Weights of the flow of one actuator in ripple volume and peak flow of all on the supply.
+
+    The others run the same cycle later or earlier; their flow is linear between samples. Both
+    results are linear in the flow while the samples of their extremes stay the same.
+
+    Parameters
+    ----------
+    time : of the samples [s]
+    phases : delays of the others, as shares of the period
+    """
+
+    def __init__(self, time: Array, phases: Sequence[float]) -> None:
+        self._time, count = time, len(time)
         period = time[-1] - time[0]
-        for phase in self.phases:
+        self._others = []
+        for phase in phases:
             moved = (time - time[0] - phase * period) % period + time[0]
-            left = np.clip(np.searchsorted(time, moved, side="right") - 1, 0, len(time) - 2)
+            left = np.clip(np.searchsorted(time, moved, side="right") - 1, 0, count - 2)
             share = ((moved - time[left]) / (time[left + 1] - time[left]))[:, None]
+            self._others.append((left, share))
+
+    def total(self, flow: Array) -> Array:
+        """Flow of all actuators (samples, designs) from that of one."""
+        total = flow
+        for left, share in self._others:
             total = total + (1 - share) * flow[left] + share * flow[left + 1]
         return total
 
-    def _seal_sums(self, u: Numbers, track: SampleResults) -> Array:
-        """Severity and friction energy of every seal."""
-        x = track.array("position")
-        count = range(len(self.plan.rings))
-        rows = [
-            wear.cycle_severity(contact_pressure=track.array(f"contact{i}"), position=x)
-            for i in count
-        ]
-        rows += [over_travel(track.array(f"friction{i}"), x) for i in count]
-        return np.stack(rows) if rows else np.empty((0, x.shape[1]))
+    def weights(self, flow: Array) -> _Weights:
+        """Weights at the flow of one actuator (samples, designs)."""
+        total, steps = self.total(flow), np.diff(self._time)[:, None]
+        ripple = supply_sizing.ripple_volume(time=self._time[:, None], flow=total)
+        rows = np.arange(len(steps))[:, None]
+        between = np.where(rows < ripple.largest, 0.5, 0.0) - np.where(rows < ripple.smallest, 0.5, 0.0)
+        taken = np.zeros_like(flow)
+        taken[:-1] = between * steps
+        taken[1:] += between * steps
+        mean = np.zeros_like(steps, shape=(len(flow), 1))
+        mean[:-1] = 0.5 * steps
+        mean[1:] += 0.5 * steps
+        taken -= mean * (taken.sum(axis=0) / mean.sum())
+        peak = np.zeros_like(flow)
+        np.put_along_axis(peak, np.argmax(total, axis=0)[None], 1.0, axis=0)
+        return _Weights(self._of_one(taken), self._of_one(peak))
 
-    def _worst(
-        self, extremes: Mapping[str, tuple[str, Sense]], windows: TimeWindows, track: SampleResults
-    ) -> Array:
-        """Extremes in windows, name by name."""
-        outputs = np.array([track.outputs.index(output) for output, _ in extremes.values()])
-        signs = np.array([1.0 if sense == "min" else -1.0 for _, sense in extremes.values()])
-        rows = windows.least(track.values[..., 0][:, outputs] * signs[:, None])
-        designs = np.arange(track.shape[0])
-        picked = complexed(track.values[rows, outputs[:, None, None], designs])
-        return picked.reshape(rows.shape[0] * rows.shape[1], -1)
-
-    def _pressure_times_speed(self, u: Numbers, track: SampleResults) -> Array:
-        """Largest contact pressure times speed of every seal, in windows."""
-        blocks = []
-        for i in range(len(self.plan.rings)):
-            product = wear.pressure_velocity(
-                contact_pressure=track.array(f"contact{i}"), speed=track.array("speed")
-            )
-            rows = self.windows.least(-product.real[:, None, :: track.shape[1]])[0]
-            rows = np.repeat(rows, track.shape[1], axis=1)
-            blocks.append(np.take_along_axis(product, rows, axis=0))
-        return np.concatenate(blocks) if blocks else np.empty((0, track.array("speed").shape[1]))
-
-
-SUMS = (
-    "duration", "way", "volume", "supply_energy", "leakage_energy", "work_out", "work_in",
-    "friction_energy", "return_energy", "throttling_energy", "oil_volume", "position_mean",
-    "inlet_heat", "inlet_volume", "ripple_volume", "flow_total", "exchange_a", "exchange_b",
-)  # fmt: skip
-"""Sums over a cycle."""
-SEAL_SUMS = ("severity", "seal_friction_energy")
-"""Sums over a cycle for each seal."""
-
-
-def sums_of(u: Numbers, time: Array, track: SampleResults) -> dict[str, Array]:
-    """Sums over the motion and over time."""
-    x, supply = track.array("position"), track.array("supply")
-    leakage, force = track.array("leakage"), track.array("force")
-    dx = x[1:] - x[:-1]
-    outward = dx.real > 0
-    way = np.where(outward, dx, -dx)
-    areas = u["area_a"], u["area_b"]
-    volume = np.where(outward, *areas) * way
-    work = 0.5 * (force[1:] + force[:-1]) * dx
-    duration = over_time(np.ones_like(x[:, :1]), time)
-    supplied = _flowing(supply, volume)
-    leaked = over_time(supply * leakage, time)
-    out = np.where(work.real > 0, work, 0.0).sum(axis=0)
-    absorbed = -np.where(work.real < 0, work, 0.0).sum(axis=0)
-    rubbed = over_travel(track.array("friction"), x)
-    drained = u["drain"] * (np.where(outward, *areas[::-1]) * way).sum(axis=0)
-    oil = u["area_a"] * x + u["area_b"] * (u["stroke"] - x)
-    filled = volume.sum(axis=0)
-    sums = {
-        "duration": duration,
-        "way": wear.sliding_distance(position=x),
-        "volume": filled + over_time(leakage, time),
-        "supply_energy": supplied + leaked,
-        "leakage_energy": leaked,
-        "work_out": out,
-        "work_in": absorbed,
-        "friction_energy": rubbed,
-        "return_energy": drained,
-        "throttling_energy": supplied - drained - (out - absorbed) - rubbed,
-        "oil_volume": over_time(oil, time) / duration,
-        "position_mean": over_time(x, time) / duration,
-        "inlet_heat": _flowing(track.array("inlet_drop"), volume),
-        "inlet_volume": filled,
-    }
-    return sums | _exchange(u, x, duration, turning_points(track.real("position")[:, 0]))
-
-
-def _flowing(values: Array, volume: Array) -> Array:
-    """Sum of mean values times the volumes of the intervals."""
-    return (0.5 * (values[1:] + values[:-1]) * volume).sum(axis=0)
+    def _of_one(self, weights: Array) -> Array:
+        """Weights of the flow of one actuator from those of the total flow."""
+        own = weights
+        for left, share in self._others:
+            own = own.copy()
+            for at, part in ((left, 1 - share), (left + 1, share)):
+                np.add.at(own, at, part * weights)
+        return own
 
 
 def turning_points(position: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
@@ -379,26 +502,6 @@ def turning_points(position: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
     signs = np.sign(np.diff(position)[moves])
     turns = moves[1:][signs[1:] != signs[:-1]]
     return np.concatenate([[0], turns, [len(position) - 1]])
-
-
-def _exchange(
-    u: Numbers, x: Array, duration: Array, turns: npt.NDArray[np.intp]
-) -> dict[str, Array]:
-    """Flow of fresh oil into each chamber: of every stroke, what the line does not hold back.
-
-    All designs turn at the same samples: a lever arm does not change its sign.
-    """
-    strokes = x[turns[1:]] - x[turns[:-1]]
-    flows = {}
-    for chamber, sign in (("a", 1.0), ("b", -1.0)):
-        filling = np.where(sign * strokes.real > 0, sign * strokes, 0.0)
-        fresh = heat_transfer.exchanged_volume(
-            piston_area=u[f"area_{chamber}"],
-            travel=filling,
-            line_volume=u[f"line_volume_{chamber}"],
-        )
-        flows[f"exchange_{chamber}"] = fresh.sum(axis=0) / duration
-    return flows
 
 
 class TimeWindows(NamedTuple):
@@ -416,16 +519,17 @@ class TimeWindows(NamedTuple):
         Values (samples, outputs, designs) give samples (outputs, windows * RANKS, designs). An
         unknown value (NaN) is the least.
         """
-        keys = np.where(np.isnan(values), -np.inf, values)[self.rows]
-        keys[self.repeated] = np.inf
-        last = min(RANKS, keys.shape[1]) - 1
-        picked = np.argpartition(keys, last, axis=1)[:, : last + 1]
-        order = np.argsort(np.take_along_axis(keys, picked, axis=1), axis=1, kind="stable")
-        picked = np.take_along_axis(picked, order, axis=1)
-        picked = picked[:, np.minimum(np.arange(RANKS), last)]  # (windows, ranks, outputs, designs)
-        windows = np.arange(len(self.rows))[:, None, None, None]
-        found = self.rows[windows, picked].transpose(2, 0, 1, 3)
-        return found.reshape(keys.shape[2], -1, keys.shape[3])
+        outputs = values.transpose(1, 2, 0)[:, :, self.rows]  # (outputs, designs, windows, samples)
+        keys = np.where(np.isnan(outputs), -np.inf, outputs)
+        keys[..., self.repeated] = np.inf
+        ranks = []
+        for _ in range(RANKS):
+            ranks.append(np.argmin(keys, axis=-1))
+            if keys.shape[-1] > 1:
+                np.put_along_axis(keys, ranks[-1][..., None], np.inf, axis=-1)
+        picked = np.stack(ranks, axis=-1)  # (outputs, designs, windows, ranks)
+        found = self.rows[np.arange(len(self.rows))[:, None], picked]
+        return found.reshape(*found.shape[:2], -1).transpose(0, 2, 1)
 
 
 def windows_of(record: CycleRecord, windows: int) -> TimeWindows:

@@ -6,20 +6,40 @@ together; where the machine is missing, NumPy runs it with a complex step.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ...base.dataclass import dataclass
-from ...base.numeric import STEP, Array, absolute, maximum, real, sqrt, where
+from ...base.numeric import Array, absolute, maximum, real, sqrt, where
 from ...base.symbolic.recorded import RecordedFunction
-from ...models import lines, linkage, quasi_static
-from .numbers import SHARES, SamplePlan
+from ...models import lines, linkage, quasi_static, wear
+from .numbers import SamplePlan
 
 PASSES = 2
 """Passes for friction, which depends on the pressures, and pressures, which depend on friction."""
+
+
+COLUMNS = ("motion", "load", "rate")
+"""Columns of data of a sample: joint angle or position, torque or force, and the slope of the
+motion by time. A cycle may also have "supply", the supply pressure."""
+NEIGHBOURS = (
+    "motion_before", "load_before", "motion_after", "load_after", "time_weight", "time_share",
+    "ripple_weight", "peak_weight",
+)  # fmt: skip
+"""Further columns of data for the sums over a cycle: the samples before and after (at the ends the
+sample itself), the time that belongs to the sample, its share of the period, and the weights of the
+flow in the ripple volume and in the largest flow of all actuators."""
+SUMS = (
+    "duration", "way", "volume", "supply_energy", "leakage_energy", "work_out", "work_in",
+    "friction_energy", "return_energy", "throttling_energy", "oil_volume", "position_mean",
+    "inlet_heat", "inlet_volume", "ripple_volume", "flow_total",
+)  # fmt: skip
+"""Sums over a cycle."""
+SEAL_SUMS = ("severity", "seal_friction_energy")
+"""Sums over a cycle for each seal."""
 
 
 def sample(
@@ -31,22 +51,21 @@ def sample(
     ----------
     plan : structure of the design
     u : numbers of the design and of the cycle, see `numbers.collect`
-    s : "motion" (joint angle or position), "load" (torque or force), "rate" (slope of the motion by
-        time), and "supply" if the cycle states the supply pressure of every sample
+    s : the columns of data of the sample, see `COLUMNS`
     linked : whether the linkage gives position and lever arm
 
     Returns
     -------
     results by name, SI
     """
-    position, arm = _kinematics(u, s, linked=linked)
+    position, arm = _kinematics(u, s["motion"], linked=linked)
     move = _Move(plan, u, u["load_scale"] * s["load"] / arm, arm * s["rate"] / u["time_scale"])
     supply = s["supply"] if "supply" in s else u["level"]
     balance = _balanced(plan, u, move, supply)
-    driven = move.chambers["driven_area"]
+    friction = sum(balance.frictions, u["other_friction"])
     needed = quasi_static.needed_supply(
-        load=move.against + sum(balance.frictions, u["other_friction"]),
-        speed=move.speed if plan.valve else 0.0 * move.speed,
+        load=move.against + friction,
+        speed=move.fast if plan.valve else 0.0 * move.fast,
         return_pressure=u["drain"],
         ratio=move.ratio,
         feed_coefficient=move.feed,
@@ -54,7 +73,8 @@ def sample(
         **move.chambers,
     )
     a, b = balance.a, balance.b
-    leak = _leakage(plan, u, move.extending, supply, a, b)
+    driven, other = where(move.extending, a, b), where(move.extending, b, a)
+    leak = _leakage(plan, u, move, supply, driven, other)
     results = {
         "position": position,
         "arm": arm,
@@ -63,21 +83,104 @@ def sample(
         "supply": supply,
         "pressure_a": a,
         "pressure_b": b,
-        "friction": sum(balance.frictions, u["other_friction"]),
+        "friction": friction,
         "needed": needed,
         "share": needed / supply,
-        "reserve": (supply - needed) * driven,
+        "reserve": (supply - needed) * move.chambers["driven_area"],
         "leakage": leak,
-        "flow": driven * absolute(move.speed) + leak,
+        "flow": move.chambers["driven_area"] * move.fast + leak,
         "power": move.force * move.speed,
-        "inlet_drop": supply - where(move.extending, a, b),
+        "inlet_drop": supply - driven,
     }
+    if plan.parts:
+        results["pulse_a"], results["pulse_b"] = a / u["supply"], b / u["supply"]
+        results["pulse_rod"] = -move.force / u["rod_pulse"]
     if plan.valve:
         results["opening"] = _opening(move, balance.edge_drop)
     for i, part in enumerate(balance.frictions):
+        contact = _parabola(u, f"seal{i}.contact", _sealed(plan, i, a, b))
         results[f"friction{i}"] = part
-        results[f"contact{i}"] = _between(u, f"seal{i}.contact", _sealed(plan, i, a, b))
+        results[f"contact{i}"] = contact
+        results[f"pv{i}"] = wear.pressure_velocity(contact_pressure=contact, speed=move.fast)
     return results
+
+
+def summands(
+    plan: SamplePlan, u: Mapping[str, Array], s: Mapping[str, Array], *, linked: bool
+) -> list[Array]:
+    """Summands of a sample in all `SUMS`, and in `SEAL_SUMS` of each seal; their sums are SI.
+
+    Sums over the motion are those of the trapezoid rule between positions, sums over time those of
+    the trapezoid rule in time: a sample has half of the interval before and half of that after it.
+    Arguments are those of `sample`; `s` also has the columns `NEIGHBOURS`.
+    """
+    here = sample(plan, u, s, linked=linked)
+    x, supply = here["position"], here["supply"]
+    ends = []
+    for word in ("before", "after"):
+        position, arm = _kinematics(u, s[f"motion_{word}"], linked=linked)
+        force = 0.5 * (u["load_scale"] * s[f"load_{word}"] / arm + here["force"])
+        ends.append(_interval(u, x - position if word == "before" else position - x, force))
+    way, volume, returned, out, absorbed = (
+        0.5 * (one + two) for one, two in zip(*ends, strict=True)
+    )
+    time = s["time_weight"] * u["time_scale"]
+    leaked = here["leakage"] * time
+    supplied, drained = supply * volume, u["drain"] * returned
+    rubbed = here["friction"] * way
+    sums = {
+        "duration": time,
+        "way": way,
+        "volume": volume + leaked,
+        "supply_energy": supplied + supply * leaked,
+        "leakage_energy": supply * leaked,
+        "work_out": out,
+        "work_in": absorbed,
+        "friction_energy": rubbed,
+        "return_energy": drained,
+        "throttling_energy": supplied - drained - (out - absorbed) - rubbed,
+        "oil_volume": (u["area_a"] * x + u["area_b"] * (u["stroke"] - x)) * s["time_share"],
+        "position_mean": x * s["time_share"],
+        "inlet_heat": here["inlet_drop"] * volume,
+        "inlet_volume": volume,
+        "ripple_volume": here["flow"] * s["ripple_weight"] * u["time_scale"],
+        "flow_total": here["flow"] * s["peak_weight"],
+    }
+    seals = range(len(plan.rings))
+    return [
+        *(sums[name] for name in SUMS),
+        *(here[f"contact{i}"] * way for i in seals),
+        *(here[f"friction{i}"] * way for i in seals),
+    ]
+
+
+class _Interval(NamedTuple):
+    """Motion between two samples."""
+
+    way: Array
+    volume: Array
+    """Oil from the supply [m^3]."""
+    returned: Array
+    """Oil to the return line [m^3]."""
+    out: Array
+    """Work on the load [J]."""
+    absorbed: Array
+    """Work of the load [J]."""
+
+
+def _interval(u: Mapping[str, Array], step: Array, force: Array) -> _Interval:
+    """Motion by a step, under the mean force."""
+    outward = real(step) > 0
+    way = where(outward, step, -step)
+    work = force * step
+    out = where(real(work) > 0, work, 0.0)
+    return _Interval(
+        way,
+        where(outward, u["area_a"], u["area_b"]) * way,
+        where(outward, u["area_b"], u["area_a"]) * way,
+        out,
+        out - work,
+    )
 
 
 class _Move:
@@ -88,6 +191,7 @@ class _Move:
     ) -> None:
         self.force, self.speed = force, speed
         self.extending = real(speed) >= 0
+        self.fast = where(self.extending, speed, -speed)
         areas = u["area_a"], u["area_b"]
         self.chambers = {
             "driven_area": where(self.extending, *areas),
@@ -101,7 +205,7 @@ class _Move:
         self.ratio = quasi_static.edge_ratio(
             **self.chambers, feed_coefficient=self.feed, drain_coefficient=drain
         )
-        self.line_a, self.line_b = _line_drops(plan, u, speed)
+        self.line_a, self.line_b = _line_drops(plan, u, self.fast)
         self.against = (
             where(self.extending, force, -force)
             + u["area_a"] * self.line_a
@@ -134,7 +238,7 @@ def _balanced(plan: SamplePlan, u: Mapping[str, Array], move: _Move, supply: Arr
         )
         into, out = state.driven - lines, state.other + others
         a, b = where(move.extending, into, out), where(move.extending, out, into)
-        frictions = [_friction(plan, u, i, a, b, move.speed) for i in range(len(plan.rings))]
+        frictions = [_friction(plan, u, i, a, b, move.fast) for i in range(len(plan.rings))]
         friction = sum(frictions, u["other_friction"])
     return _Balance(a, b, state.edge_drop, frictions)
 
@@ -147,29 +251,27 @@ def _opening(move: _Move, edge_drop: Array) -> Array:
         driven_area=move.chambers["driven_area"],
         feed_coefficient=move.feed,
     )
-    return where(moves, absolute(move.speed) / limit, np.inf)
+    return where(moves, move.fast / limit, np.inf)
 
 
-def _kinematics(
-    u: Mapping[str, Array], s: Mapping[str, Array], *, linked: bool
-) -> tuple[Array, Array]:
+def _kinematics(u: Mapping[str, Array], motion: Array, *, linked: bool) -> tuple[Array, Array]:
     """Piston position and lever arm; the arm is 1 for a cycle of position and force."""
     if linked:
         at = linkage.linkage(
             base_radius=u["base_radius"],
             crank_radius=u["crank_radius"],
-            joint_angle=s["motion"],
+            joint_angle=motion,
             angle_offset=u["angle_offset"],
         )
         return at.length - u["closed_length"], at.lever_arm
-    return u["arm"] * s["motion"] + u["shift"], u["arm"]
+    return u["arm"] * motion + u["shift"], u["arm"]
 
 
 def _line_drops(plan: SamplePlan, u: Mapping[str, Array], speed: Array) -> tuple[Array, Array]:
-    """Pressure drops of the lines of chambers A and B."""
+    """Pressure drops of the lines of chambers A and B at a speed without sign."""
     drops: dict[str, Array] = {"a": 0.0 * speed, "b": 0.0 * speed}
     for chamber, i in plan.lines:
-        flow = u[f"area_{chamber}"] * absolute(speed)
+        flow = u[f"area_{chamber}"] * speed
         oil = {"flow": flow, "density": u["density"]}
         inner = u[f"line{i}.inner_diameter"]
         drops[chamber] = (
@@ -195,19 +297,17 @@ def _sealed(plan: SamplePlan, i: int, a: Array, b: Array) -> Array:
     return maximum(b if name == "rod" else a, 0.0)
 
 
-def _between(u: Mapping[str, Array], name: str, pressure: Array) -> Array:
-    """A contact result at a sealed pressure, on the parabola through the three known values."""
-    low, middle, high = (u[f"{name}[{share}]"] for share in SHARES)
-    z = pressure / u["supply"]
-    return low + z * ((4 * middle - 3 * low - high) + z * 2 * (low + high - 2 * middle))
+def _parabola(u: Mapping[str, Array], name: str, pressure: Array) -> Array:
+    """A contact result at a sealed pressure."""
+    constant, slope, curve = (u[f"{name}[{power}]"] for power in range(3))
+    return constant + pressure * (slope + pressure * curve)
 
 
 def _friction(
-    plan: SamplePlan, u: Mapping[str, Array], i: int, a: Array, b: Array, speed: Array
+    plan: SamplePlan, u: Mapping[str, Array], i: int, a: Array, b: Array, fast: Array
 ) -> Array:
     """Friction of a seal against the motion; at rest it must break away."""
-    coulomb = _between(u, f"seal{i}.coulomb", _sealed(plan, i, a, b))
-    fast = absolute(speed)
+    coulomb = _parabola(u, f"seal{i}.coulomb", _sealed(plan, i, a, b))
     law = plan.rings[i].element.friction_law
     seal: Any = _Seal(u, i)
     return law.level(seal, coulomb, fast) + u[f"seal{i}.viscous_friction"] * fast
@@ -225,22 +325,26 @@ class _Seal:
 
 
 def _leakage(
-    plan: SamplePlan, u: Mapping[str, Array], extending: Array, supply: Array, a: Array, b: Array
+    plan: SamplePlan, u: Mapping[str, Array], move: _Move, supply: Array, driven: Array, other: Array
 ) -> Array:
     """Leakage that the supply feeds: past the two shut edges, and across the piston."""
-    across = u["piston_leakage"] * absolute(a - b)
+    across = u["piston_leakage"] * absolute(driven - other)
     if not plan.valve:
         return across
+    out = move.extending
 
-    def edge(name: str, drop: Array) -> Array:
+    def edge(extending: str, retracting: str, drop: Array) -> Array:
         driving = maximum(drop, 0.0)
         safe = where(real(driving) > 0, driving, 1.0)
         root = where(real(driving) > 0, sqrt(safe), 0.0)
-        return u[f"{name}.leak_linear"] * driving + u[f"{name}.leak_root"] * root
+        linear, turbulent = (
+            where(out, u[f"{extending}.{key}"], u[f"{retracting}.{key}"])
+            for key in ("leak_linear", "leak_root")
+        )
+        return linear * driving + turbulent * root
 
-    out = edge("feed_b", supply - b) + edge("drain_a", a - u["drain"])
-    back = edge("feed_a", supply - a) + edge("drain_b", b - u["drain"])
-    return where(extending, out, back) + across
+    into = edge("feed_b", "feed_a", supply - other)
+    return into + edge("drain_a", "drain_b", driven - u["drain"]) + across
 
 
 def leakage_at_rest(plan: SamplePlan, u: Mapping[str, Array]) -> Array:
@@ -260,40 +364,15 @@ FEEDS = ("feed_a", "feed_b")
 
 @dataclass(frozen=True)
 class SampleResults:
-    """Results of all samples of a cycle, with slopes in every direction.
-
-    Arrays are (samples, columns): a column for each design, or for each direction of each design;
-    their imaginary parts are then the slopes times the complex step.
-    """
+    """Results of all samples of a cycle, without slopes."""
 
     values: npt.NDArray[np.float64]
-    """(samples, outputs, designs, 1 + directions)"""
+    """(samples, outputs, designs)"""
     outputs: tuple[str, ...]
 
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Number of designs, and of columns of each."""
-        designs, width = self.values.shape[2:]
-        return designs, max(width - 1, 1)
-
-    def array(self, name: str) -> Array:
-        """A result at all samples (samples, columns)."""
-        part = complexed(self.values[:, self.outputs.index(name)])
-        return part.reshape(len(part), -1)
-
     def real(self, name: str) -> npt.NDArray[np.float64]:
-        """A result at all samples, without slopes (samples, designs)."""
-        return self.values[:, self.outputs.index(name), :, 0]
-
-
-def complexed(part: Array) -> Array:
-    """Values and slopes (..., 1 + directions) as complex numbers (..., directions)."""
-    if part.shape[-1] == 1:
-        return part
-    result = np.empty((*part.shape[:-1], part.shape[-1] - 1), dtype=complex)
-    result.real = part[..., :1]
-    result.imag = STEP * part[..., 1:]
-    return result
+        """A result at all samples (samples, designs)."""
+        return self.values[:, self.outputs.index(name)]
 
 
 class SampleModel:
@@ -303,8 +382,12 @@ class SampleModel:
     ----------
     plan : structure of the design
     names : names of the numbers, in the order of their arrays
-    columns : names of the columns of a record
+    columns : names of the columns of a record, see `COLUMNS`
     linked : whether the linkage gives position and lever arm
+
+    Attributes
+    ----------
+    outputs : names of the results of a sample
     """
 
     def __init__(
@@ -312,73 +395,69 @@ class SampleModel:
     ) -> None:
         self.plan, self.names, self.columns = plan, tuple(names), tuple(columns)
         self.linked = linked
-        self.outputs: tuple[str, ...] = ()
-        self._recorded: RecordedFunction | None = None
-
-    def _function(self, points: Array) -> Array:
-        values = dict(zip((*self.names, *self.columns), points, strict=True))
-        results = sample(
-            self.plan,
-            {name: values[name] for name in self.names},
-            {name[1:]: values[name] for name in self.columns},
-            linked=self.linked,
+        one = dict.fromkeys((*names, *columns), np.ones(1))
+        with np.errstate(all="ignore"):
+            self.outputs = tuple(sample(plan, one, one, linked=linked))
+        self._results = self._recorded(
+            columns, lambda u, s: [*sample(plan, u, s, linked=linked).values()]
         )
-        self.outputs = tuple(results)
-        first = points[0]
-        xp: Any = np if type(first) is np.ndarray else first.__array_namespace__()
-        rows = [xp.broadcast_to(xp.asarray(row), first.shape) for row in results.values()]
-        return xp.stack(rows)
+        self._summands: dict[bytes, RecordedFunction] = {}
 
-    def run(self, numbers: Array, seeds: Array, data: Array) -> SampleResults:
-        """Results of all samples.
+    def _recorded(
+        self,
+        columns: Sequence[str],
+        function: Callable[[Mapping[str, Array], Mapping[str, Array]], Sequence[Array]],
+    ) -> RecordedFunction:
+        """A function of numbers and columns; a column may have the name of a number."""
+        count, labels = len(self.names), [*self.names, *(f"={name}" for name in columns)]
+
+        def rows(points: Array) -> Array:
+            u = dict(zip(self.names, points[:count], strict=True))
+            results = function(u, dict(zip(columns, points[count:], strict=True)))
+            first = points[0]
+            xp: Any = np if type(first) is np.ndarray else first.__array_namespace__()
+            return xp.stack([xp.broadcast_to(xp.asarray(row), first.shape) for row in results])
+
+        return RecordedFunction(rows, labels, np.ones(len(labels)))
+
+    def results(self, numbers: Array, data: Array, seeds: Array) -> Array:
+        """Results with slopes (samples, outputs, designs, 1 + directions).
 
         Parameters
         ----------
-        numbers : values of the numbers (numbers, designs)
-        seeds : their changes in every direction (numbers, designs, directions)
-        data : columns of the record (samples, columns)
+        numbers : (numbers, designs)
+        data : columns of the samples (samples, columns)
+        seeds : changes of the numbers in every direction (numbers, designs, directions)
         """
-        active = seeds.any(axis=(0, 1))
-        if 0 < active.sum() < len(active):  # the other directions change nothing
-            track = self.run(numbers, seeds[:, :, active], data)
-            results = np.zeros((*track.values.shape[:3], 1 + len(active)))
-            results[..., np.append(True, active)] = track.values
-            return SampleResults(results, self.outputs)
-        (count, columns), (width, designs, directions) = data.shape, seeds.shape
-        points = np.empty((designs, count, width + columns))
-        points[:, :, :width] = numbers.T[:, None]
-        points[:, :, width:] = data
-        points = points.reshape(designs * count, -1)
-        if self._recorded is None:
-            names = (*self.names, *self.columns)
-            self._recorded = RecordedFunction(self._function, names, points[0].copy())
-            self._recorded(points[:1].T)
-        recording = self._recorded.recording
-        changes = np.zeros((designs, width + columns, directions))
-        changes[:, :width] = seeds.transpose(1, 0, 2)
-        if recording is None:
-            results = self._by_numpy(points, changes)
-        elif directions:
-            values, slopes = recording.program.slopes(points, changes)
-            results = np.concatenate([values[:, :, None], slopes], axis=2)
-        else:
-            results = recording.program.values(points)[:, :, None]
-        if recording is not None:
-            outside = ~recording.holds(results[:, :, 0])
-            results = results[:, : recording.rows]
-            for k in np.flatnonzero(outside):
-                results[k] = self._by_numpy(points[k : k + 1], changes[k // count, None])[0]
-        results = results.reshape(designs, count, -1, 1 + directions).transpose(1, 2, 0, 3)
-        return SampleResults(results, self.outputs)
+        designs = numbers.shape[1]
+        own = np.broadcast_to(data, (designs, *data.shape)).reshape(-1, data.shape[1])
+        results = self._results.duals(numbers.T, own, self._padded(seeds, data.shape[1]))
+        return results.reshape(designs, len(data), -1, 1 + seeds.shape[2]).transpose(1, 2, 0, 3)
 
-    def _by_numpy(self, points: Array, changes: Array) -> Array:
-        """Results (points, outputs, 1 + directions); changes (designs, inputs, directions)."""
-        directions = changes.shape[2]
-        with np.errstate(all="ignore"):
-            if not directions:
-                return self._function(points.T).T[:, :, None]
-            steps = np.repeat(changes, len(points) // len(changes), axis=0)
-            stepped = (points[:, :, None] + 1j * STEP * steps).transpose(1, 0, 2)
-            rows = self._function(stepped.reshape(len(stepped), -1))
-        rows = rows.reshape(len(rows), len(points), directions).transpose(1, 0, 2)
-        return np.concatenate([rows.real[:, :, :1], rows.imag / STEP], axis=2)
+    def sums(self, numbers: Array, data: Array, seeds: Array, wanted: Array) -> Array:
+        """Sums over a cycle with slopes (sums, designs, 1 + directions), in order of `summands`.
+
+        Sums that are not `wanted` (sums,) are 0. `data` has a row of columns and `NEIGHBOURS` for
+        every sample of every design (designs, samples, columns).
+        """
+        designs, _, width = data.shape
+        key = wanted.tobytes()
+        if key not in self._summands:
+            rows = np.flatnonzero(wanted).tolist()
+
+            def function(u: Mapping[str, Array], s: Mapping[str, Array]) -> list[Array]:
+                every = summands(self.plan, u, s, linked=self.linked)
+                return [every[row] for row in rows]
+
+            self._summands[key] = self._recorded((*self.columns, *NEIGHBOURS), function)
+        own, padded = data.reshape(-1, width), self._padded(seeds, width)
+        sums = np.zeros((len(wanted), designs, 1 + seeds.shape[2]))
+        found = self._summands[key].duals(numbers.T, own, padded, designs)
+        sums[wanted] = found.transpose(1, 0, 2)
+        return sums
+
+    def _padded(self, seeds: Array, columns: int) -> Array:
+        """Seeds of numbers and columns (designs, inputs, directions); data do not change."""
+        padded = np.zeros((seeds.shape[1], seeds.shape[0] + columns, seeds.shape[2]))
+        padded[:, : seeds.shape[0]] = seeds.transpose(1, 0, 2)
+        return padded
