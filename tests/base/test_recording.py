@@ -134,6 +134,28 @@ def test_many_points_equal_each_point():
     assert np.array_equal(together, made.slopes(points, seeds)[0])
 
 
+@pytest.mark.parametrize("groups", [1, 2, 7, 14, 42])
+@pytest.mark.parametrize("directions", [0, 1, 7, 11, 15, 20])
+def test_shared_inputs_and_sums_equal_each_point(groups, directions):
+    """Shared inputs, shared seeds and sums over points, with several points side by side."""
+    _, made = recorded(
+        lambda x: np.stack([np.sin(x[0]) * x[1], np.where(x[2] > 0, x[3], x[0] / x[2]), -x[0]]),
+        np.ones(4),
+    )
+    rng = np.random.default_rng(groups)
+    shared, own = rng.normal(size=(groups, 2)), rng.normal(size=(42, 2))
+    seeds = rng.normal(size=(groups, 4, directions))
+    each = np.arange(42) * groups // 42
+    points = np.concatenate([shared[each], own], axis=1)
+    found = [made.slopes(x[None], s[None]) for x, s in zip(points, seeds[each], strict=True)]
+    single = np.concatenate([np.concatenate([v[:, :, None], d], axis=2) for v, d in found])
+    assert np.array_equal(made.duals(shared, own, seeds), single)
+    summed = made.duals(shared, own, seeds, 6)
+    np.testing.assert_allclose(summed, single.reshape(6, 7, 3, -1).sum(axis=1), rtol=1e-12)
+    with pytest.raises(ValueError, match="not the points"):
+        made.duals(shared, own, seeds, 5)
+
+
 @pytest.mark.parametrize("directions", [1, 4, 5, 16, 17, 40])
 def test_any_number_of_directions(directions):
     """Directions are computed in groups of the machine's widths."""

@@ -37,7 +37,7 @@ class _Counted(NamedTuple):
     largest: Rows
     """(loads, cycles, designs)"""
     smallest: Rows
-    count: Array
+    times: Array
     """1, or 0 where a load has fewer cycles than another."""
     highest: Rows
     """Samples of the largest and of the smallest load (loads, 1, designs)."""
@@ -57,7 +57,7 @@ class _Ends(NamedTuple):
 
     largest: Array
     smallest: Array
-    count: Array
+    times: Array
     """Number of times each occurs in a life."""
 
 
@@ -90,9 +90,7 @@ class CycleFatigue:
         self._load = np.array([self._loads.index(part.load) for _, part in parts], dtype=np.intp)
         self._tension = np.array([part.only_tension for _, part in parts], dtype=bool)
         self._metal = sum(not part.bolted for _, part in parts)
-        self._stress = [
-            [rows[f"part{i}.{key}"] for i, _ in parts[: self._metal]] for key in STRESS
-        ]
+        self._stress = [[rows[f"part{i}.{key}"] for i, _ in parts[: self._metal]] for key in STRESS]
         self._life = [rows[f"part{i}.life"] for i, _ in parts[self._metal :]]
         words = (*self.cycles, "") if parts else ()
         self.keys = [(cycle, "damage", part.place) for cycle in words for _, part in parts]
@@ -121,7 +119,9 @@ class CycleFatigue:
 
         return _Counted(
             outputs,
-            *map(by_load, (pairs.largest, pairs.smallest, pairs.count)),
+            by_load(pairs.largest),
+            by_load(pairs.smallest),
+            by_load(pairs.count),
             np.argmax(levels, axis=1)[:, None],
             np.argmin(levels, axis=1)[:, None],
         )
@@ -136,7 +136,7 @@ class CycleFatigue:
     ) -> Array:
         """Miner's sums with slopes (keys, designs, 1 + directions).
 
-        With directions there is one design. Results that are not wanted may be 0.
+        Results that are not wanted may be 0.
 
         Parameters
         ----------
@@ -172,7 +172,7 @@ class CycleFatigue:
 
         one = np.ones(counted.highest.shape)
         return (
-            ends(counted.largest, counted.smallest, counted.count),
+            ends(counted.largest, counted.smallest, counted.times),
             ends(counted.highest, counted.lowest, one),
         )
 
@@ -180,13 +180,13 @@ class CycleFatigue:
         """Counted cycles of a duty cycle in a life, and those of its starts."""
         repeats, starts = (numbers[self._rows[f"{name}|{key}"]] for key in LIFE)
         high, low = ends.largest, ends.smallest
-        peak = np.where(np.abs(high[..., :1]) >= np.abs(low[..., :1]), high, low)
-        up = np.where(peak[..., :1] > 0, peak, 0.0)
+        peak: Array = np.where(np.abs(high[..., :1]) >= np.abs(low[..., :1]), high, low)
+        up: Array = np.where(peak[..., :1] > 0, peak, 0.0)
         return _Ends(
             np.concatenate([cycles.largest, up], axis=1),
             np.concatenate([cycles.smallest, peak - up], axis=1),
             np.concatenate(
-                [cycles.count[..., None] * repeats, ends.count[..., None] * starts], axis=1
+                [cycles.times[..., None] * repeats, ends.times[..., None] * starts], axis=1
             ),
         )
 
@@ -241,16 +241,16 @@ class CycleFatigue:
         result[..., 0] = (count * each).sum(axis=1)
         if numbers.shape[2] == 1:
             return result
-        factors = [count[..., 0] * (slope * some)[..., 0] for slope, some in zip(slopes, kept, strict=True)]
+        factors = [each, *(count * slope * some for slope, some in zip(slopes, kept, strict=True))]
         for load in range(len(self._loads)):
             parts = np.flatnonzero(self._load == load)
-            change = each[parts, :, 0] @ ends.count[load, :, 0, 1:]
-            for factor, end in zip(factors, (ends.largest, ends.smallest), strict=True):
-                change += factor[parts] @ end[load, :, 0, 1:]
-            result[parts, 0, 1:] = change
-        for rows, parts, slope in by_number:
-            factor = (count[parts] * slope).sum(axis=1)[..., None]
-            result[parts, :, 1:] += factor * numbers[rows, :, 1:]
+            steps = (end[load, :, :, 1:] for end in (ends.times, ends.largest, ends.smallest))
+            result[parts, :, 1:] = sum(
+                _summed(factor[parts], step) for factor, step in zip(factors, steps, strict=True)
+            )
+        for rows, some, slope in by_number:
+            factor = (count[some] * slope).sum(axis=1)[..., None]
+            result[some, :, 1:] += factor * numbers[rows, :, 1:]
         return result
 
     def _each(
@@ -284,8 +284,17 @@ class CycleFatigue:
         )
 
 
+def _summed(factors: Array, steps: Array) -> Array:
+    """Sums over cycles (parts, designs, directions).
+
+    Factors are (parts, cycles, designs), steps (cycles, designs, directions).
+    """
+    sums: Array = np.matmul(factors.transpose(2, 0, 1), steps.transpose(1, 0, 2))
+    return sums.transpose(1, 0, 2)
+
+
 def _damage_of(points: Array) -> Array:
-    """Damage of single cycles of stress (1, cycles), from the numbers `_LOCAL` (numbers, cycles)."""
+    """Damage of single cycles of stress (1, cycles) from numbers `_LOCAL` (numbers, cycles)."""
     largest, smallest, span, offset, slope, ultimate, limit, limit_cycles = points
     cycles = endurance.basquin_cycles(
         amplitude=endurance.reversed_amplitude(

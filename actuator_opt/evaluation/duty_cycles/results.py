@@ -176,7 +176,7 @@ class CycleModels:
         values = points.real[:, :: max(directions, 1)]
         seeds = points.imag.reshape(*values.shape, directions) / STEP if directions else None
         longest = max(len(record.time) for record in self.records.values())
-        most = 1 if directions else max(1, MOST_SAMPLES // longest)
+        most = max(1, MOST_SAMPLES // (longest * (4 if directions else 1)))
         blocks = []
         with np.errstate(all="ignore"):
             for at in range(0, values.shape[1], most):
@@ -193,10 +193,7 @@ class CycleModels:
         return {name: cycle.samples(values) for name, cycle in self._cycles.items()}
 
     def _results(self, values: Array, seeds: Array, wanted: Array | None) -> Array:
-        """Results with slopes (places, designs, 1 + directions) at values (numbers, designs).
-
-        With directions there is one design.
-        """
+        """Results with slopes (places, designs, 1 + directions) at values (numbers, designs)."""
         wanted = np.ones(len(self.places), dtype=bool) if wanted is None else wanted
         ends = np.cumsum([len(cycle.keys) for cycle in self._cycles.values()])
         parts = dict(zip(self._cycles, np.split(wanted, ends), strict=False))
@@ -289,7 +286,12 @@ class _Cycle:
         return SampleResults(found[..., 0], self.model.outputs)
 
     def results(
-        self, values: Array, seeds: Array, track: SampleResults, wanted: Array, more: Sequence[Array]
+        self,
+        values: Array,
+        seeds: Array,
+        track: SampleResults,
+        wanted: Array,
+        more: Sequence[Array],
     ) -> tuple[Array, NearSamples]:
         """All results (keys, designs, 1 + directions), and the samples of `more` with slopes.
 
@@ -335,7 +337,7 @@ class _Cycle:
     def _near(
         self, values: Array, seeds: Array, track: SampleResults, rows: Sequence[Array]
     ) -> NearSamples:
-        """The samples of some rows, with slopes."""
+        """The samples that are in some rows of any design, with slopes."""
         count = len(track.values)
         if not seeds.shape[2]:
             return NearSamples(track.values[..., None], np.arange(count))
@@ -379,9 +381,7 @@ Extreme = tuple[tuple[str, str], int, float]
 """Name and place of an extreme, its output, and 1 for its least or -1 for its largest value."""
 
 
-def _extremes(
-    extremes: Mapping[str, tuple[str, Sense]], outputs: Sequence[str]
-) -> list[Extreme]:
+def _extremes(extremes: Mapping[str, tuple[str, Sense]], outputs: Sequence[str]) -> list[Extreme]:
     """Extremes of the outputs that there are."""
     return [
         ((name, ""), outputs.index(output), 1.0 if sense == "min" else -1.0)
@@ -474,13 +474,8 @@ class SupplyWeights:
         total, steps = self.total(flow), np.diff(self._time)[:, None]
         ripple = supply_sizing.ripple_volume(time=self._time[:, None], flow=total)
         rows = np.arange(len(steps))[:, None]
-        between = np.where(rows < ripple.largest, 0.5, 0.0) - np.where(rows < ripple.smallest, 0.5, 0.0)
-        taken = np.zeros_like(flow)
-        taken[:-1] = between * steps
-        taken[1:] += between * steps
-        mean = np.zeros_like(steps, shape=(len(flow), 1))
-        mean[:-1] = 0.5 * steps
-        mean[1:] += 0.5 * steps
+        between = 0.5 * ((rows < ripple.largest).astype(float) - (rows < ripple.smallest))
+        taken, mean = _by_sample(between * steps), _by_sample(0.5 * steps)
         taken -= mean * (taken.sum(axis=0) / mean.sum())
         peak = np.zeros_like(flow)
         np.put_along_axis(peak, np.argmax(total, axis=0)[None], 1.0, axis=0)
@@ -494,6 +489,14 @@ class SupplyWeights:
             for at, part in ((left, 1 - share), (left + 1, share)):
                 np.add.at(own, at, part * weights)
         return own
+
+
+def _by_sample(halves: Array) -> Array:
+    """Weights of samples (samples, designs) from those of half intervals."""
+    weights: Array = np.zeros((len(halves) + 1, halves.shape[1]))
+    weights[:-1] = halves
+    weights[1:] += halves
+    return weights
 
 
 def turning_points(position: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
@@ -528,7 +531,7 @@ class TimeWindows(NamedTuple):
             if keys.shape[-1] > 1:
                 np.put_along_axis(keys, ranks[-1][..., None], np.inf, axis=-1)
         picked = np.stack(ranks, axis=-1)  # (outputs, designs, windows, ranks)
-        found = self.rows[np.arange(len(self.rows))[:, None], picked]
+        found: npt.NDArray[np.intp] = self.rows[np.arange(len(self.rows))[:, None], picked]
         return found.reshape(*found.shape[:2], -1).transpose(0, 2, 1)
 
 

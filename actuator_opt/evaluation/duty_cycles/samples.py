@@ -325,7 +325,12 @@ class _Seal:
 
 
 def _leakage(
-    plan: SamplePlan, u: Mapping[str, Array], move: _Move, supply: Array, driven: Array, other: Array
+    plan: SamplePlan,
+    u: Mapping[str, Array],
+    move: _Move,
+    supply: Array,
+    driven: Array,
+    other: Array,
 ) -> Array:
     """Leakage that the supply feeds: past the two shut edges, and across the piston."""
     across = u["piston_leakage"] * absolute(driven - other)
