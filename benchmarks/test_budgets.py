@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import resource
+import shutil
 import statistics
 import subprocess
 import sys
@@ -16,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 import actuator_opt as ao
 from actuator_opt.base.numeric import STEP
@@ -41,6 +43,7 @@ from actuator_opt.optimisation.solver import solve
 from actuator_opt.uncertainties import study
 
 KNEE = Path(__file__).parent.parent / "designs" / "knee_bonded.yaml"
+WALKING = KNEE.with_name("knee_walking.yaml")
 
 
 SERVO = """
@@ -207,6 +210,37 @@ def test_evaluate_with_gradients_of_a_servo(benchmark, servo):
     evaluator = Evaluator(servo.problem)
     z = evaluator.space.to_z(servo.problem.start)[:, None]
     benchmark(lambda: evaluator.jacobians(z))
+
+
+@pytest.mark.parametrize(("samples", "budget"), [(101, 4), (1000, 6)])
+def test_a_duty_cycle_beside_none(benchmark, samples, budget, tmp_path):
+    """Value and all gradients take at most `budget` times as long as without a duty cycle."""
+    shutil.copytree(WALKING.parent / "cycles", tmp_path / "cycles")
+    text = yaml.safe_load(WALKING.read_text())
+    cycles = text["duty"]["cycles"][:1]
+    plain = {key: value for key, value in text.items() if key != "duty"} | {
+        "requirements": {k: v for k, v in text["requirements"].items() if "duty" not in k}
+    }
+    walking = text | {"duty": text["duty"] | {"cycles": cycles, "samples": samples}}
+
+    def evaluation(design):
+        path = tmp_path / "design.yaml"
+        path.write_text(yaml.safe_dump(design, sort_keys=False))
+        problem = build(prepare(read_design(path).design))
+        x = problem.problem.start
+        points = np.repeat(x[:, None].astype(complex), len(x), axis=1) + np.diag(1j * STEP * x)
+        problem.evaluate(points)
+        return lambda: problem.evaluate(points)
+
+    with np.errstate(all="ignore"):
+        runs = evaluation(walking), evaluation(plain)
+        pairs = [[timeit.timeit(run, number=20) / 20 for run in runs] for _ in range(9)]
+        benchmark(runs[0])
+    ratio = statistics.median(one / other for one, other in pairs)
+    added = 1e3 * min(one - other for one, other in pairs)
+    benchmark.extra_info |= {"ratio": ratio, "budget": budget}
+    print(f"\n{samples} samples: {ratio:.1f} times as long as without, {added:.2f} ms more")
+    assert ratio <= budget
 
 
 @pytest.mark.parametrize("designs", [1, 256])
