@@ -41,6 +41,7 @@ NOT_TRACED = {
     "rough_surface.film_ratio_under_contact": "a table",
     "rough_surface.mean_gap_ratio": "a table",
     "supply_sizing.ripple_volume": "a history of samples",
+    "thermal_network.ripple_bound": "a history of samples",
     "tube_burst.burst_of_tube": "a matrix of layers",
     "tube_elements.layered_tube": "a matrix of layers",
     "wear.cycle_severity": "a history of samples",

@@ -177,6 +177,8 @@ class CycleFatigue:
                     own = self._load == load
                     change[own] += np.einsum("pcd,cdn->pdn", slope[own], step[load])
         for rows, first, slope in by_number:
+            if not rows:  # no part of this kind
+                continue
             step = np.imag(numbers[rows]).reshape(len(rows), designs, -1)
             change[first : first + len(rows)] += (count[first : first + len(rows)] * slope).sum(
                 axis=1
