@@ -247,7 +247,7 @@ def _open_checks(evaluation: Evaluation, title: str) -> Block:
 
 
 def places(evaluation: Evaluation) -> Iterator[Block]:
-    """The worst places of every limit that several places have to meet, and the number of others."""
+    """The worst places of every limit that several places have to meet; the others are counted."""
     stated: Sequence[Requirement | Check] = (*evaluation.requirements, *evaluation.checks)
     limits = {
         row.metric: (row.name if isinstance(row, Check) else "", row.sense, row.limit)

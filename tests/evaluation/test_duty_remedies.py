@@ -37,7 +37,7 @@ def missed(actuator: ao.Actuator) -> dict[str, Shortfall]:
     """The missed checks of a design with one cycle, by metric."""
     subject = actuator.subject()
     models, numbers = duty_numbers(subject, subject.values())
-    duty = study(models, numbers[:, 0], ())
+    duty = study(models, numbers[:, 0])
     lacking = [name for name, margin in margins(actuator).items() if margin < 0]
     return {x.metric: x for x in shortfalls(subject, duty, LIMITS, lacking)}
 
@@ -93,7 +93,7 @@ def test_the_valve_that_is_enough_follows_from_the_square_of_its_flow():
     def needed(flow):
         subject = actuator.changed({"valve.rated_flow": flow}).subject()
         models, numbers = duty_numbers(subject, subject.values())
-        return study(models, numbers[:, 0], ()).cycles[0].traces["needed"]
+        return study(models, numbers[:, 0]).cycles[0].traces["needed"]
 
     now = 4 / 60000
     present, without = needed(now), needed(1e3 * now)
