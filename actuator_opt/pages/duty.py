@@ -15,6 +15,7 @@ from ..evaluation.duty_cycles.study import CycleStudy, DutyStudy
 from ..evaluation.duty_cycles.thermal import MEAN
 from ..evaluation.result import Evaluation
 from ..metrics import METRICS
+from ..models.wear import SHORT_STROKE
 from ..rendering.axes import per_cent
 from ..rendering.blocks import (
     Block,
@@ -29,7 +30,7 @@ from ..rendering.blocks import (
     soft,
 )
 from ..rendering.series import Series, heading
-from ..rendering.text import DASH, limit_text, number, trimmed, value_text
+from ..rendering.text import DASH, limit_text, number, pretty, trimmed, value_text
 from .duty_figures import (
     ANGLE,
     ARM,
@@ -107,7 +108,8 @@ def shortfall_blocks(evaluation: Evaluation) -> list[Table]:
     if study is None or not study.shortfalls:
         return []
     rows: list[Sequence[Cell]] = [
-        [clean(shortfall.reason), clean(shortfall.cures)] for shortfall in study.shortfalls
+        [pretty(clean(words)) for words in (shortfall.reason, shortfall.cures)]
+        for shortfall in study.shortfalls
     ]
     columns = [
         Column("what lacks", "left", 1.0, least=34, wraps=True),
@@ -205,11 +207,13 @@ def _missed(cycle: CycleStudy) -> bool:
 
 def _overview(study: DutyStudy, cycles: Sequence[CycleStudy] | None = None) -> Table:
     """A row for every cycle, or for some."""
-    rows = [_overview_row(cycle) for cycle in (study.cycles if cycles is None else cycles)]
+    rowed = study.cycles if cycles is None else cycles
+    rows = [_overview_row(cycle) for cycle in rowed]
     columns = [
         Column("duty cycle", "left", 1.3, least=12),
         Column("duration", "right", drop=8),
         Column("repeats", "right", drop=9),
+        Column("strokes (short)", "right", drop=10),
         Column("reserve", "right", style="state"),
         Column("at", "right", drop=2),
         Column("opening", "right", drop=3),
@@ -218,6 +222,8 @@ def _overview(study: DutyStudy, cycles: Sequence[CycleStudy] | None = None) -> T
         Column("efficiency", "right", drop=6),
     ]
     note = "Reserve: least force left to the supply. Supply: energy per cycle."
+    if any(x.strokes for cycle in rowed for x in cycle.short_strokes.values()):
+        note += f" Short: below {SHORT_STROKE:g} contact widths of a seal, which starves it of oil."
     if study.opening_limit is not None:
         share = limit_text(OPENING, "max", study.opening_limit)[2:]
         note = note.replace("supply.", f"supply with the valve at most {share} open.", 1)
@@ -236,6 +242,7 @@ def _overview_row(cycle: CycleStudy) -> Row:
         soft(cycle.name),
         f"{number(float(np.ptp(cycle.time)), 3)} s",
         DASH if cycle.repeats is None else trimmed(cycle.repeats, 3),
+        _strokes(cycle),
         value_of(FORCE, reserve.value),
         time_of(cycle, reserve.sample),
         _opening(cycle),
@@ -244,6 +251,12 @@ def _overview_row(cycle: CycleStudy) -> Row:
         efficiency_of(cycle),
     ]
     return Row(cells, "missed" if _missed(cycle) else "met")
+
+
+def _strokes(cycle: CycleStudy) -> str:
+    """Strokes between reversals, and how many of them starve a seal."""
+    short = max((x.strokes for x in cycle.short_strokes.values()), default=0)
+    return f"{cycle.reversals} ({short})" if short else str(cycle.reversals)
 
 
 Limit: TypeAlias = tuple[Sense, float]

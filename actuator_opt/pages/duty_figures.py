@@ -553,6 +553,7 @@ def _warming_panel(warming: Warming) -> Panel:
     return Panel(
         f"{warming_name(warming)}: temperature, {unit_text(TEMPERATURE.unit)}",
         Axis(f"time, {unit}", range=(0.0, float(time[-1]))),
+        Axis(range=even_range([start, highest, *(x.value for x in levels if not x.upright)])),
         curves=curves,
         points=points,
         levels=levels,
