@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import pi
 from typing import NamedTuple
 
-from ...base.numeric import Array, minimum
+from ...base.numeric import Array, minimum, real, where
 from ...design.model import Design
 from ...models import heat_transfer, thermal_network
 from ...models.thermal_network import (
@@ -216,13 +216,15 @@ _MEANS = ("position_mean", "exchange_a", "exchange_b")
 
 def _heats(total: Mapping[str, Array], mean: Mapping[str, Array]) -> _Heats:
     time = mean["duration"]
+    fills = real(total["inlet_volume"]) > 0  # at rest no oil flows in
+    volume = where(fills, total["inlet_volume"], 1.0)
     return _Heats(
         piston=total["piston"] / time,
         rod=total["rod"] / time,
         speed=total["way"] / time,
         position=mean["position_mean"],
         exchange=mean["exchange_a"] + mean["exchange_b"],
-        inlet_drop=total["inlet_heat"] / total["inlet_volume"],
+        inlet_drop=where(fills, total["inlet_heat"], 0.0) / volume,
     )
 
 
