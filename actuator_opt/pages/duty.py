@@ -103,7 +103,7 @@ def duty_blocks(evaluation: Evaluation) -> list[Block]:
 
 
 def shortfall_blocks(evaluation: Evaluation) -> list[Table]:
-    """What the duty cycles lack where, and what is enough; empty if they miss no check."""
+    """Shortages of the duty cycles, with sufficient changes; empty if they miss no check."""
     study = evaluation.duty
     if study is None or not study.shortfalls:
         return []

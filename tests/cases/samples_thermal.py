@@ -23,10 +23,10 @@ def steady_state(*, air, **wall):
     return network.steady_temperatures(network=made, surroundings=air)
 
 
-def faces(*, oil, layers):
-    """Inner faces of the wall between temperatures of its nodes."""
-    made = network.thermal_network(oil=OIL, **WALL)
-    return network.inner_faces(network=made, oil=oil, layers=layers)
+def faces(*, warm, middles, **wall):
+    """Inner faces of the wall of a network that is made here, between temperatures of its nodes."""
+    made = network.thermal_network(**wall)
+    return network.inner_faces(network=made, oil=warm, layers=middles)
 
 
 SAMPLES = {
@@ -71,7 +71,9 @@ SAMPLES = {
             Surroundings(293.0, film_coefficient=40.0),
         )
     ],
-    "thermal_network.inner_faces": (faces, {"oil": 330.0, "layers": (320.0, 310.0, 305.0)}),
+    "thermal_network.inner_faces": (
+        faces, {"oil": OIL, "warm": 330.0, "middles": (320.0, 310.0, 305.0), **WALL},
+    ),
     "thermal_network.ripple_bound": {
         "time": (0.1, 1.0, 2.0, 3.0), "power": (0.5, 8.0, 2.0, 1.0), "heat_capacity": 10.0,
     },

@@ -101,7 +101,7 @@ def shortfalls(
 
 
 class _Lack(NamedTuple):
-    """What a cycle lacks, the sample at which it lacks most, and how much of it, in words."""
+    """A shortage of a cycle: its kind, the sample at which it is largest, and a sentence."""
 
     what: Lack
     sample: int

@@ -127,7 +127,7 @@ class CycleStudy:
 
 
 Lack: TypeAlias = Literal["force", "flow", "pressure", "travel", "fatigue strength"]
-"""What a duty cycle may lack; without pressure the oil cavitates."""
+"""Kinds of shortage of a duty cycle; without pressure the oil cavitates."""
 
 
 class Remedy(NamedTuple):
