@@ -154,3 +154,25 @@ def test_a_design_without_bolted_parts_has_slopes_of_its_damage():
     of = [k for k, place in enumerate(models.places) if place.name == "damage"]
     assert of
     np.testing.assert_allclose(slopes[of], expected[of], rtol=5e-3)
+
+
+LINES = "lines:\n" + "".join(
+    f"  - {{chamber: {chamber}, type: pipe, inner_diameter: 6 mm, outer_diameter: 8 mm, "
+    "material: steel_e355, length: LENGTH}\n"
+    for chamber in "ab"
+)
+
+
+def test_behind_a_long_line_the_same_oil_shuttles():
+    """Lines that hold more than a stroke keep fresh oil out: the oil takes the wall's heat."""
+    base = knee().source.text
+
+    def with_lines(length: str) -> ao.Evaluation:
+        return ao.evaluate(ao.read(LINES.replace("LENGTH", length) + base))
+
+    long, short = with_lines("5 m"), with_lines("50 mm")
+    drop = [x.metrics["duty_supply_needed"].value for x in (long, short)]
+    assert drop[0] > drop[1] > walking().metrics["duty_supply_needed"].value
+    constants = [x.duty.warming[0].time_constant for x in (long, short)]
+    assert constants[0] > 2 * constants[1]  # no oil carries heat away
+    assert long.duty.warming[0].ripple < short.duty.warming[0].ripple
