@@ -13,9 +13,13 @@ from ..base.errors import Diagnostic, UsageError
 from ..base.quantities import INPUTS
 from ..design.cycle_files import CycleFile
 from ..design.cycle_peaks import CyclePeaks, peaks
+from ..design.cycle_reader import moved, texts_of
 from ..design.cycle_record import cycle_text
-from ..design.duty import DutyCycle
-from ..design.writer import exact_text, scalar
+from ..design.duty import DutyCycle, DutySection
+from ..design.model import Linkage
+from ..design.reader import LoadedDesign
+from ..design.writer import exact_text, init_text, scalar
+from ..evaluation import evaluate, prepare
 from .actuator import read_as
 from .starting import SPEED, Start
 
@@ -56,6 +60,30 @@ class CycleStart:
         file = self.cycle.record.name
         return [f"{file}: {text}" for text in self.cycle.record.warnings]
 
+    def joined_to(self, loaded: LoadedDesign, folder: Path, **title: str) -> Start:
+        """A copy of a design with this cycle besides those that it has.
+
+        Raises
+        ------
+        UsageError : the design has a load case or a cycle of this name
+        InputError : the copy is not a valid design
+        """
+        design = moved(loaded.design, folder)
+        cases = [case.name for case in design.load_cases]
+        cycles = () if design.duty is None else design.duty.cycles
+        if self.cycle.name in (*cases, *(cycle.name for cycle in cycles)):
+            message = f"{design.name} has a cycle or load case {self.cycle.name!r} already"
+            raise UsageError(Diagnostic(message, "rename the CSV file"))
+        duty = DutySection(cycles=(*cycles, self.cycle))
+        if design.duty is not None:
+            duty = design.duty.model_copy(update={"cycles": duty.cycles})
+        design = design.model_copy(update={"duty": duty})
+        text = init_text(from_design=replace(loaded, design=design), **title)
+        actuator = read_as(text, loaded.source.file, files=texts_of(design))
+        evaluated = evaluate(prepare(actuator.design)).duty
+        lacks = () if evaluated is None else evaluated.shortfalls
+        return Start(actuator, not lacks, "; ".join(shortfall.sentence for shortfall in lacks))
+
     def added_to(self, start: Start) -> Start:
         """The start design with the block `duty`, and the cycle's file."""
         source = start.actuator.source
@@ -70,20 +98,26 @@ class CycleStart:
 
 
 def cycle_start(
-    file: str | Path, *, lever_arm: float | None = None, folder: str | Path = ""
+    file: str | Path,
+    *,
+    lever_arm: float | None = None,
+    linkage: Linkage | None = None,
+    folder: str | Path = "",
 ) -> CycleStart:
     """Read the cycle for which a start design is made.
 
     Parameters
     ----------
     file : CSV file as for `design.cycle_record.read_cycle`; it must close
-    lever_arm : constant lever arm of the joint [m]; required if the file states a joint
+    lever_arm : constant lever arm of the joint [m]
+    linkage : linkage of the joint, if there is no constant lever arm
     folder : folder in which the design will be written, to which it names the file relatively
 
     Raises
     ------
     InputError : the file is not usable
-    UsageError : the file states a joint, but there is no lever arm; or positions below 0
+    UsageError : the file states a joint, but there is neither lever arm nor linkage; or positions
+        below 0
     """
     path = Path(file)
     relative = Path(os.path.relpath(path, folder or ".")).as_posix()
@@ -91,11 +125,12 @@ def cycle_start(
         relative = str(path)
     own = CycleFile(relative, cycle_text(path), str(folder))
     record = own.record(closed=True)
-    if record.joint and lever_arm is None:
+    if record.joint and lever_arm is None and linkage is None:
         message = f"{file}: states the motion of a joint"
-        raise UsageError(Diagnostic(message, 'add e.g. --lever-arm "40 mm"'))
+        remedy = 'add e.g. --lever-arm "40 mm", or --from a design with a linkage'
+        raise UsageError(Diagnostic(message, remedy))
     cycle = DutyCycle(name=_name(path), file=own, lever_arm=lever_arm if record.joint else None)
-    most = peaks(cycle)
+    most = peaks(cycle, linkage)
     if most.position_low is not None and most.position_low < 0:
         text = INPUTS["length"].text(most.position_low)
         message = f"{file}: positions begin at {text}, but count from fully retracted"

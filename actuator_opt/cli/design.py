@@ -68,7 +68,10 @@ NewName = Annotated[
         "Without a name the text is printed; without a duty it is a template of all keys.",
     ),
 ]
-Source = Annotated[str | None, typer.Option("--from", metavar="DESIGN", help="Copy this design.")]
+Source = Annotated[
+    str | None,
+    typer.Option("--from", metavar="DESIGN", help="Copy this design; --cycle adds a cycle to it."),
+]
 OfDesign = Annotated[
     str | None,
     typer.Option("--scenario", metavar="DESIGN", help="Write a scenario for this design instead."),
@@ -125,7 +128,7 @@ CycleOf = Annotated[
         "--cycle",
         metavar="FILE.csv",
         help="Duty cycle that gives forces, speed and stroke: time with position and force, or "
-        "with joint_angle and joint_torque (add --lever-arm).",
+        "with joint_angle and joint_torque (add --lever-arm, or --from a design with a linkage).",
     ),
 ]
 Yes = Annotated[bool, typer.Option("--yes", help="Use the defaults instead of asking questions.")]
@@ -165,16 +168,25 @@ def init(
         "type": type_,
     }  # fmt: skip
     answers = {key: text for key, text in options.items() if text is not None}
-    _only_one(
-        {"--scenario": scenario, "--from": source, "--cycle": cycle, "--yes": yes or None}
-        | {f"--{key.replace('_', '-')}": text for key, text in answers.items()}
-    )
+    sources = {"--scenario": scenario, "--from": source, "--cycle": cycle, "--yes": yes or None}
+    sources |= {f"--{key.replace('_', '-')}": text for key, text in answers.items()}
+    joined = source is not None and cycle is not None and scenario is None
+    _only_one({x: y for x, y in sources.items() if not joined or x not in _BESIDE_COPY})
     copied = source is not None or scenario is not None
     title, out = _target(name, out)
     job = Job(as_json=as_json, quiet=quiet)
     verdict: dict[str, Any] = {}
     faults, remarks = list[Diagnostic](), list[str]()
-    if answers or cycle or yes or (out is not None and not copied):
+    if joined:
+        assert source is not None
+        assert cycle is not None
+        joint, start = _joined(source, cycle, answers.get("lever_arm"), out, title)
+        text, verdict = start.text, {"met": start.met}
+        if not start.met:
+            faults = [Diagnostic("the cycle does not fit yet", start.sentence, str(out or ""))]
+            verdict["remedy"] = start.sentence
+        remarks = [f"warning: {text}" for text in joint.warnings]
+    elif answers or cycle or yes or (out is not None and not copied):
         found = _cycle(cycle, answers, out)
         duty = _duty(answers, ask=not as_json, defaults=yes)
         start = _solved(job, duty, found, title)
@@ -194,6 +206,30 @@ def init(
         files = [{"path": str(out)}]
         job.answer(lambda: {"files": files} | verdict, remarks=remarks, files=files, faults=faults)
     return ExitCode.MISSED if faults else ExitCode.MET
+
+
+_BESIDE_COPY = ("--cycle", "--lever-arm")
+"""Options that may stand beside --from, if --cycle is among them."""
+
+
+def _joined(
+    source: str, file: str, lever_arm: str | None, out: Path | None, title: dict[str, str]
+) -> tuple[CycleStart, Start]:
+    """A copy of a design, named by `title`, with the cycle in a file."""
+    from ..api.starting import duty_answers
+    from ..api.starting_cycle import cycle_start
+    from ..design import read_design
+    from ..design.kinds import ValueFault
+
+    arm = duty_answers({} if lever_arm is None else {"lever_arm": lever_arm}, "--").get("lever_arm")
+    assert not isinstance(arm, str)
+    folder = Path() if out is None else out.parent
+    loaded = read_design(source)
+    found = cycle_start(file, lever_arm=arm, linkage=loaded.design.linkage, folder=folder)
+    try:
+        return found, found.joined_to(loaded, folder, **title)
+    except ValueFault as fault:
+        raise UsageError(Diagnostic(f"NAME: {fault.message}", fault.remedy)) from None
 
 
 def _only_one(sources: Mapping[str, object]) -> None:

@@ -11,6 +11,7 @@ import hashlib
 import json
 import math
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -28,11 +29,18 @@ from ..joints.kinds import OWN_KEYS
 from ..metrics import METRICS, MetricRow
 from ..metrics.table import CHECKS
 from ..version import VERSION
-from . import dynamics_study as dynamics, outline, validity as doubts, valve_study, weight
+from . import (
+    duty_study,
+    dynamics_study as dynamics,
+    outline,
+    validity as doubts,
+    valve_study,
+    weight,
+)
 from .duty_cycles import remedies
-from .duty_cycles.study import DutyStudy, study as duty_study
+from .duty_cycles.study import DutyStudy, Shortfall
 from .film import floats
-from .kernel import ModelRun, PreparedDesign, compute, duty_numbers, governing
+from .kernel import ModelRun, PreparedDesign, compute, governing
 from .limits import (
     ALL_CASES,
     LimitRow,
@@ -61,6 +69,8 @@ NEAR = 0.02
 NO_ANSWER = "not computable for these dimensions"
 NOT_COMPUTED = "not computed for this design"
 UNLOADED = "no load case loads it"
+UNLIMITED = "there is no load, so the safety factor is unlimited"
+STALLED = "the supply does not move the load"
 
 TOLERANCE = 1e-6
 """A margin of at least −TOLERANCE counts as met."""
@@ -294,7 +304,7 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
         for limit in limits
         if limit.origin in ("requirement", "case")
     )
-    duty = _duty(subject, v)
+    duty = duty_study.study(subject, v, run)
     warnings = list(doubts.warnings(subject, v, run, duty))
     outside = {metric for metric, _ in warnings}
     metrics = {name: _metric(name, computed, v, subject, outside) for name in subject.quantities}
@@ -302,7 +312,8 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
     warnings += [
         ("", f"check missed: {c.name}: {_against(c)}") for c in checks if c.status == "missed"
     ]
-    warnings += [("", text) for text in _cures(subject, duty, checks)]
+    if duty is not None:
+        duty = replace(duty, shortfalls=tuple(_shortfalls(subject, duty, checks)))
     return Evaluation(
         name=design.name,
         version=VERSION,
@@ -327,29 +338,20 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
     )
 
 
-def _duty(subject: PreparedDesign, v: Values) -> DutyStudy | None:
-    """The duty cycles of the design over time."""
-    if subject.design.duty is None:
-        return None
-    models, numbers = duty_numbers(subject, v)
-    return duty_study(models, numbers[:, 0], ())
-
-
-def _cures(
-    subject: PreparedDesign, duty: DutyStudy | None, checks: Sequence[Check]
-) -> Iterator[str]:
-    """Yield a sentence for every missed check of the duty cycles: the shortfall and its cures."""
+def _shortfalls(
+    subject: PreparedDesign, duty: DutyStudy, checks: Sequence[Check]
+) -> Iterator[Shortfall]:
+    """Yield every missed check of the duty cycles with its cures."""
     own = [c for c in checks if c.metric in remedies.CHECKED and c.status != "not_checked"]
     missed = [c.metric for c in own if c.status == "missed" and c.metric is not None]
-    if duty is None or not missed:
+    if not missed:
         return
     limits = {
         c.metric: (c.sense, c.limit)
         for c in own
         if c.metric is not None and c.sense is not None and c.limit is not None
     }
-    for shortfall in remedies.shortfalls(subject, duty, limits, missed):
-        yield shortfall.sentence(subject.design)
+    yield from remedies.shortfalls(subject, duty, limits, missed)
 
 
 def _friction_parts(computed: MetricArrays, v: Values, case: str | None) -> dict[str, float]:
@@ -375,7 +377,7 @@ def _metric(
         computed_at_all = name in computed.metrics
         why = computed.why.get(name, NO_ANSWER if computed_at_all else NOT_COMPUTED)
         if value == math.inf:
-            why = computed.why.get(name, "there is no load, so the safety factor is unlimited")
+            why = computed.why.get(name, STALLED if name == "duty_opening" else UNLIMITED)
         definition = None if name in METRICS else subject.quantities[name]
         return Metric(name=name, value=None, why=why, definition=definition)
     _, case, place = next(row for row in rows if row[0] == value)

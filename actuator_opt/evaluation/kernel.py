@@ -495,8 +495,8 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
 def duty_numbers(subject: PreparedDesign, v: Values) -> tuple[CycleModels, Array]:
     """Models of the duty cycles, and the numbers (numbers, designs) on which they depend."""
     with np.errstate(all="ignore"):
-        plan, numbers = _duty_numbers(subject, v, statics(subject, v, MetricArrays()))
-    return _cycle_models(subject, plan, numbers), stacked_numbers(numbers)
+        plan, numbers = sample_numbers(subject, v, statics(subject, v, MetricArrays()))
+    return cycle_models(subject, plan, numbers), stacked_numbers(numbers)
 
 
 def duty_results(subject: PreparedDesign, v: Values) -> MetricArrays:
@@ -507,7 +507,8 @@ def duty_results(subject: PreparedDesign, v: Values) -> MetricArrays:
     return out
 
 
-def _duty_numbers(subject: PreparedDesign, v: Values, s: Statics) -> tuple[SamplePlan, Numbers]:
+def sample_numbers(subject: PreparedDesign, v: Values, s: Statics) -> tuple[SamplePlan, Numbers]:
+    """Plan of the samples of the duty cycles, and the numbers by name."""
     basis = s.base
     return numbers_module.collect(
         v,
@@ -522,7 +523,8 @@ def _duty_numbers(subject: PreparedDesign, v: Values, s: Statics) -> tuple[Sampl
     )
 
 
-def _cycle_models(subject: PreparedDesign, plan: SamplePlan, numbers: Numbers) -> CycleModels:
+def cycle_models(subject: PreparedDesign, plan: SamplePlan, numbers: Numbers) -> CycleModels:
+    """Models of the duty cycles; made once for the same numbers."""
     duty = subject.design.duty
     assert duty is not None
     names = tuple(numbers)
@@ -542,8 +544,8 @@ def _duty(subject: PreparedDesign, v: Values, s: Statics, out: MetricArrays) -> 
         return
     results = results_in(v)
     if not results:
-        plan, numbers = _duty_numbers(subject, v, s)
-        models = _cycle_models(subject, plan, numbers)
+        plan, numbers = sample_numbers(subject, v, s)
+        models = cycle_models(subject, plan, numbers)
         results = dict(zip(models.places, models(stacked_numbers(numbers)), strict=True))
     duty_metrics.compute(
         v,

@@ -296,6 +296,7 @@ def warnings(
     if duty is not None:
         valve = subject.design.valve is not None
         yield from duty_validity.warnings(duty, _frequencies(subject, v, run), valve=valve)
+        yield from duty_validity.short_strokes(duty)
     if run.wall.missing:
         yield "burst_factor", f"barrel: {run.wall.missing[0]}"
     yield from _measured(subject, v)

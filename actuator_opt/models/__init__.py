@@ -24,10 +24,4 @@ Some functions are for scripts alone; no part of the program calls them:
   `stiffness_published.barrel_stiffness_as_published`,
   `stiffness_published.line_stiffness_as_published`: equations of [AaltoThesis] that the report
   of its test cylinder names
-- `rainflow.cycle_stress`, `rainflow.change_cycle`, `rainflow.start_stress`: fatigue of a single
-  stress history
-- `wear.strokes`: strokes and reversals of a seal in a cycle
-- `supply_sizing.mean_flow`, `supply_sizing.total_flow`: flow of histories with different samples
-- `thermal_network.temperatures_after`, `thermal_network.slowest_time_constant`,
-  `thermal_network.ripple_bound`: warming of an actuator over time
 """

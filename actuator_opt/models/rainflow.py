@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..base.numeric import Array, absolute, histories, namespace, real, sorted_unique
+from ..base.numeric import Array, histories, real, sorted_unique
 
 
 class Cycles(NamedTuple):
@@ -31,19 +31,6 @@ class Cycles(NamedTuple):
     largest: Array
     smallest: Array
     count: Array
-
-
-class CycleStress(NamedTuple):
-    """Stress of counted cycles, cycles on the first axis.
-
-    Attributes
-    ----------
-    amplitude : half of the range [Pa]
-    mean : mean of the largest and the smallest value [Pa]
-    """
-
-    amplitude: Array
-    mean: Array
 
 
 def repeating_cycles(*, history: Array | Sequence[Array]) -> Cycles:
@@ -113,113 +100,3 @@ def _pairs(history: Any) -> list[tuple[int, int]]:
     # From the largest value down and up again: the halves are in pairs, the first leads down.
     samples = ((i, k) if rotated[i] > rotated[k] else (k, i) for i, k in [*closed, *halves[::2]])
     return [((i + start) % size, (k + start) % size) for i, k in samples]
-
-
-def cycle_stress(*, history: Array | Sequence[Array], cycles: Cycles) -> CycleStress:
-    """Amplitude and mean of counted cycles, s_a = (s_1 - s_2)/2 and s_m = (s_1 + s_2)/2.
-
-    s_1 and s_2 are the largest and the smallest value of a cycle.
-
-    Parameters
-    ----------
-    history : stress at the samples, time on the first axis [Pa]
-    cycles : from `repeating_cycles` or `change_cycle` of this history [-]
-
-    Returns
-    -------
-    amplitudes and means, cycles on the first axis [Pa]
-
-    Notes
-    -----
-    Valid: any history.
-
-    References
-    ----------
-    [derived] definitions
-
-    Examples
-    --------
-    >>> history = [0.0, 210.0, 80.0, 150.0, 20.0, 120.0, 0.0]
-    >>> stress = cycle_stress(history=history, cycles=repeating_cycles(history=history))
-    >>> [(float(a), float(m)) for a, m in zip(stress.amplitude, stress.mean)]
-    [(35.0, 115.0), (50.0, 70.0), (105.0, 105.0)]
-    """
-    (values,) = histories(history)
-    xp = namespace(values)
-
-    def at(index: Array) -> Array:
-        return xp.take_along_axis(values, xp.asarray(index), axis=0)
-
-    largest, smallest = at(cycles.largest), at(cycles.smallest)
-    return CycleStress(0.5 * (largest - smallest), 0.5 * (largest + smallest))
-
-
-def change_cycle(*, history: Array | Sequence[Array], changes: float) -> Cycles:
-    """Cycle between the largest and the smallest value of several histories of one life.
-
-    Each history is counted on its own, which misses the change from one history to the next. Each
-    change adds this cycle, the largest that can occur.
-
-    Parameters
-    ----------
-    history : stress of all histories, one after the other, time on the first axis [Pa]
-    changes : number of changes between histories in a life [-]
-
-    Returns
-    -------
-    indices of the cycle in the joined histories, and its count [-]
-
-    Notes
-    -----
-    Valid: on the safe side of the true cycles of the changes.
-
-    References
-    ----------
-    [derived] bound of every cycle that spans two histories (our choice)
-
-    Examples
-    --------
-    >>> walk, hold = [10.0, 90.0, 10.0], [40.0, 120.0, 40.0]
-    >>> cycle = change_cycle(history=[*walk, *hold], changes=2000.0)
-    >>> print(cycle.largest, cycle.smallest, cycle.count)
-    [4] [0] [2000.]
-    """
-    (values,) = histories(history)
-    numbers = np.asarray(real(values))  # a NaN is both largest and smallest: the damage is NaN
-    largest = np.argmax(numbers, axis=0, keepdims=True)
-    smallest = np.argmin(numbers, axis=0, keepdims=True)
-    return Cycles(largest, smallest, np.full(largest.shape, float(changes)))
-
-
-def start_stress(*, history: Array | Sequence[Array]) -> CycleStress:
-    """Amplitude and mean of the cycle from zero to the peak: one start of the machine.
-
-    The peak is the value of largest magnitude: s_a = |s|/2, s_m = s/2 (ground-air-ground cycle).
-
-    Parameters
-    ----------
-    history : stress at the samples, time on the first axis [Pa]
-
-    Returns
-    -------
-    amplitude and mean, one cycle on the first axis [Pa]
-
-    Notes
-    -----
-    Valid: no stress at standstill.
-
-    References
-    ----------
-    [derived] range from zero to the peak
-
-    Examples
-    --------
-    >>> stress = start_stress(history=[30e6, 90e6, 210e6, 50e6])
-    >>> print(stress.amplitude / 1e6, stress.mean / 1e6)
-    [105.] [105.]
-    """
-    (values,) = histories(history)
-    xp = namespace(values)
-    sample = xp.argmax(absolute(real(values)), axis=0, keepdims=True)
-    peak = xp.take_along_axis(values, sample, axis=0)
-    return CycleStress(0.5 * absolute(peak), 0.5 * peak)

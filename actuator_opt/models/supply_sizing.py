@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-import numpy as np
-
 from ..base.dataclass import dataclass
 from ..base.numeric import (
     Array,
@@ -20,44 +18,7 @@ from ..base.numeric import (
     over_time,
     positive,
     real,
-    sorted_unique,
 )
-
-_SAME_PERIOD = 1e-9
-"""Largest relative difference of two periods that count as equal."""
-
-
-def mean_flow(*, time: Array | Sequence[Array], flow: Array | Sequence[Array]) -> Array:
-    """Mean flow of a cycle, the trapezoid sum of q dt divided by the period.
-
-    Parameters
-    ----------
-    time : at the samples, rising, on the first axis [s]
-    flow : q at the samples [m^3/s]
-
-    Returns
-    -------
-    mean flow [m^3/s], without the time axis
-
-    Notes
-    -----
-    Valid: samples resolve the flow; its peaks and zeros are samples.
-
-    Where positions are known, area times travel divided by the period is exact; at 100 samples per
-    stride the two differ by 0.1 %.
-
-    References
-    ----------
-    [derived] trapezoid rule
-
-    Examples
-    --------
-    >>> q = mean_flow(time=[0.0, 0.2, 0.5, 0.7, 1.0], flow=[1e-5, 6e-5, 3e-5, 0.5e-5, 1e-5])
-    >>> print(f"{q * 60000:.3f} l/min")
-    1.575 l/min
-    """
-    t, q = histories(time, flow)
-    return over_time(q, t) / (t[-1, ...] - t[0, ...])
 
 
 class Ripple(NamedTuple):
@@ -116,75 +77,6 @@ def ripple_volume(*, time: Array | Sequence[Array], flow: Array | Sequence[Array
     smallest = xp.argmin(real(taken), axis=0, keepdims=True)
     span = xp.take_along_axis(taken, largest, axis=0) - xp.take_along_axis(taken, smallest, axis=0)
     return Ripple(span[0, ...], largest[0, ...], smallest[0, ...])
-
-
-class FlowHistory(NamedTuple):
-    """Flow over a cycle, time on the first axis.
-
-    Attributes
-    ----------
-    time : of the samples [s]
-    flow : at the samples [m^3/s]
-    """
-
-    time: Array
-    flow: Array
-
-
-def total_flow(
-    *, times: Sequence[Array], flows: Sequence[Array], phases: Sequence[float]
-) -> FlowHistory:
-    """Sum of the flows of several actuators that run the same period with phases.
-
-    q(t) = sum q_k(t - phase_k T), each linear between its samples. The samples of the sum are those
-    of all actuators, shifted, so that mean flow and ripple volume are exact for linear flows.
-
-    Parameters
-    ----------
-    times : samples of each actuator, rising, without derivatives (samples,) [s]
-    flows : closed flow of each actuator, first sample = last; time on the first axis [m^3/s]
-    phases : delay of each actuator as a share of the period [-]: 0.5 for the second leg
-
-    Returns
-    -------
-    time from 0 to the period, and the flow [s, m^3/s]
-
-    Raises
-    ------
-    ValueError
-        Periods differ, or the lists have unequal lengths.
-
-    Notes
-    -----
-    Valid: closed cycles of one period.
-
-    References
-    ----------
-    [derived] linear interpolation of periodic flows
-
-    Examples
-    --------
-    >>> t, q = [0.0, 0.25, 0.5, 1.0], [0.0, 4e-5, 0.0, 0.0]
-    >>> both = total_flow(times=[t, t], flows=[q, q], phases=[0.0, 0.5])
-    >>> print(both.time, both.flow * 1e5)
-    [0.   0.25 0.5  0.75 1.  ] [0. 4. 0. 4. 0.]
-    """
-    starts = [np.asarray(time, dtype=float) - float(time[0]) for time in times]
-    period = float(starts[0][-1])
-    if any(abs(time[-1] - period) > _SAME_PERIOD * period for time in starts):
-        raise ValueError("times: the periods differ; flows add only over one period")
-    shifts = [float(phase) * period for phase in phases]
-    moved = [(time + shift) % period for time, shift in zip(starts, shifts, strict=True)]
-    grid = sorted_unique(np.concatenate([[0.0, period], *moved]))
-    total: Array = 0.0
-    for time, flow, shift in zip(starts, flows, shifts, strict=True):
-        place = (grid - shift) % period
-        left = np.clip(np.searchsorted(time, place, side="right") - 1, 0, len(time) - 2)
-        share, values = histories((place - time[left]) / (time[left + 1] - time[left]), flow)
-        xp = namespace(values)
-        before, after = (xp.take(values, xp.asarray(k), axis=0) for k in (left, left + 1))
-        total = total + (1 - share) * before + share * after
-    return FlowHistory(grid, total)
 
 
 def electric_power(

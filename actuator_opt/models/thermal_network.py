@@ -18,7 +18,19 @@ from typing import Any
 import numpy as np
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, absolute, clip, geometry, maximum, minimum, positive, real, where
+from ..base.numeric import (
+    Array,
+    absolute,
+    clip,
+    geometry,
+    histories,
+    maximum,
+    namespace,
+    over_time,
+    positive,
+    real,
+    where,
+)
 from .fluid import ATMOSPHERIC_PRESSURE
 from .heat_transfer import (
     convection_coefficient,
@@ -330,6 +342,47 @@ def steady_temperatures(
     return _state(network, ambient, [*inner, *estimates], surroundings)
 
 
+def inner_faces(
+    *, network: ThermalNetwork, oil: Array, layers: Sequence[Array]
+) -> tuple[Array, ...]:
+    """Temperature of the inner face of each layer, between the nodes on both sides.
+
+    A face stores no heat: the share of a conductance's resistance on the inner side is its share of
+    the temperature difference, also while the nodes warm up.
+
+    Parameters
+    ----------
+    network : from `thermal_network` [-]
+    oil : temperature of the oil [K]
+    layers : temperature at the middle of each layer [K]
+
+    Returns
+    -------
+    temperatures [K]
+
+    Notes
+    -----
+    Valid: any temperatures.
+
+    References
+    ----------
+    [derived] resistances in series
+
+    Examples
+    --------
+    >>> wall = [ThermalLayer(0.6e-3, 130.0, 2.688e6), ThermalLayer(1.2e-3, 0.6, 1.4915e6)]
+    >>> network = thermal_network(bore=23e-3, length=0.138, wetted_length=0.11,
+    ...                           oil=OilNode(250.0, 66.12), layers=wall)
+    >>> faces = inner_faces(network=network, oil=330.0, layers=[320.0, 310.0])
+    >>> print(" ".join(f"{t:.3f}" for t in faces))
+    320.004 319.975
+    """
+    faces = [oil + network.film_share * (layers[0] - oil)]
+    for share, inner, outer in zip(network.inner_shares, layers, layers[1:], strict=False):
+        faces.append(inner + share * (outer - inner))
+    return tuple(faces)
+
+
 class _Rises:
     """Matrix [W/K] and heats [W] of the rises over ambient: oil, layers, surface, parts.
 
@@ -464,9 +517,6 @@ def _state(
     layers = len(network.layers)
     temperatures = [ambient + rise for rise in rises]
     oil, wall = temperatures[0], temperatures[1 : layers + 1]
-    faces = [oil + network.film_share * (wall[0] - oil)]
-    for share, inner, outer in zip(network.inner_shares, wall, wall[1:], strict=False):
-        faces.append(inner + share * (outer - inner))
     conductances = tuple(
         area * _coefficient(temperature, diameter, air)
         for temperature, (area, diameter) in zip(
@@ -478,7 +528,7 @@ def _state(
         layers=tuple(wall),
         parts=tuple(temperatures[layers + 2 :]),
         surface=temperatures[layers + 1],
-        faces=tuple(faces),
+        faces=inner_faces(network=network, oil=oil, layers=wall),
         air_conductances=conductances,
     )
 
@@ -504,9 +554,20 @@ def _rates(network: ThermalNetwork, steady: SteadyTemperatures) -> tuple[Any, An
     return matrix, np.array([float(positive(c)) for c in network.capacities])
 
 
+def _modal(network: ThermalNetwork, steady: SteadyTemperatures) -> tuple[Any, Any]:
+    """Roots of the capacities, and the symmetric matrix C^(-1/2) G C^(-1/2) [1/s]."""
+    matrix, capacities = _rates(network, steady)
+    root = np.sqrt(capacities)
+    return root, matrix / root / root[:, None]
+
+
 def temperatures_after(
-    *, network: ThermalNetwork, steady: SteadyTemperatures, start: Sequence[float], time: float
-) -> tuple[float, ...]:
+    *,
+    network: ThermalNetwork,
+    steady: SteadyTemperatures,
+    start: Sequence[float],
+    time: float | Array,
+) -> tuple[Any, ...]:
     """Temperatures some time after the heat began, T = T_inf + exp(-C^-1 G t) (T_0 - T_inf).
 
     The coefficients are those of the steady state.
@@ -516,11 +577,12 @@ def temperatures_after(
     network : from `thermal_network`, of one design [-]
     steady : from `steady_temperatures` of that network [-]
     start : temperature of every node at the beginning, or a single one for all [K]
-    time : since the beginning [s]
+    time : since the beginning, a number or an array [s]
 
     Returns
     -------
-    temperatures of oil, layers and parts [K]
+    temperatures of oil, layers and parts, each of the shape of the time [K]; NaN without heat
+    capacities
 
     Raises
     ------
@@ -533,7 +595,8 @@ def temperatures_after(
 
     References
     ----------
-    [derived] linear system of first order with constant coefficients
+    [derived] linear system of first order with constant coefficients, by the modes of the
+    symmetric matrix C^(-1/2) G C^(-1/2)
 
     Examples
     --------
@@ -545,15 +608,19 @@ def temperatures_after(
     >>> print(f"{after[0] - 293.15:.2f} of {steady.oil - 293.15:.2f}")
     34.98 of 54.40
     """
-    from scipy.linalg import expm
-
-    matrix, capacities = _rates(network, steady)
     final = np.array([float(value) for value in steady.nodes])
     if len(start) not in (1, len(final)):
         raise ValueError(f"state 1 or {len(final)} temperatures for the start")
+    root, symmetric = _modal(network, steady)
+    after = np.asarray(time, dtype=float)
+    if not np.isfinite(symmetric).all():
+        return tuple(np.full(after.shape, nan)[()] for _ in final)
+    rates, modes = np.linalg.eigh(symmetric)
     change = np.broadcast_to(np.asarray(start, dtype=float), final.shape) - final
-    reached = final + expm(-time * matrix / capacities[:, None]) @ change
-    return tuple(float(value) for value in reached)
+    shares = modes.T @ (root * change)
+    decays = shares[:, None] * np.exp(-np.outer(rates, after))
+    reached = final[:, None] + (modes / root[:, None]) @ decays
+    return tuple(row.reshape(after.shape)[()] for row in reached)
 
 
 def slowest_time_constant(*, network: ThermalNetwork, steady: SteadyTemperatures) -> float:
@@ -585,14 +652,15 @@ def slowest_time_constant(*, network: ThermalNetwork, steady: SteadyTemperatures
     >>> print(f"{slowest_time_constant(network=network, steady=steady):.0f} s")
     578 s
     """
-    matrix, capacities = _rates(network, steady)
-    root = np.sqrt(capacities)
-    if not np.isfinite(matrix / root).all():
-        return float("nan")
-    return 1 / float(np.linalg.eigvalsh(matrix / root / root[:, None])[0])
+    _, symmetric = _modal(network, steady)
+    if not np.isfinite(symmetric).all():
+        return nan
+    return 1 / float(np.linalg.eigvalsh(symmetric)[0])
 
 
-def ripple_bound(*, time: Sequence[Array], power: Sequence[Array], heat_capacity: Array) -> Array:
+def ripple_bound(
+    *, time: Array | Sequence[Array], power: Array | Sequence[Array], heat_capacity: Array
+) -> Array:
     """Largest deviation of a node's temperature from its mean over a closed cycle.
 
     (max - min of E)/C with E = integral of (P - mean P) dt. The node's own losses and its
@@ -600,13 +668,13 @@ def ripple_bound(*, time: Sequence[Array], power: Sequence[Array], heat_capacity
 
     Parameters
     ----------
-    time : of the samples, rising [s]
+    time : of the samples, rising, on the first axis [s]
     power : heat into the node at the samples, linear between them [W]
     heat_capacity : C of the node [J/K], > 0
 
     Returns
     -------
-    bound of the deviation, either way [K]
+    bound of the deviation, either way [K], without the time axis
 
     Raises
     ------
@@ -628,20 +696,18 @@ def ripple_bound(*, time: Sequence[Array], power: Sequence[Array], heat_capacity
     """
     if len(time) != len(power) or len(time) < 2:
         raise ValueError("state two or more samples, with one power for each time")
-    steps = [b - a for a, b in pairwise(time)]
-    pairs = list(pairwise(power))
-    total: Array = 0.0
-    for step, (before, after) in zip(steps, pairs, strict=True):
-        total = total + 0.5 * step * (before + after)
-    mean = total / (time[-1] - time[0])
-    energy: Array = 0.0 * mean
-    highest, lowest = energy, energy
-    for step, (before, after) in zip(steps, pairs, strict=True):
-        first, last = before - mean, after - mean
-        turns = real(first) * real(last) < 0  # the extreme lies between the samples
-        change = where(turns, first - last, 0 * first + 1)
-        between = energy + where(turns, 0.5 * step * first * first / change, 0 * first)
-        energy = energy + 0.5 * step * (first + last)
-        highest = maximum(highest, maximum(between, energy))
-        lowest = minimum(lowest, minimum(between, energy))
+    t, p = histories(time, power)
+    xp = namespace(t, p)
+    steps = t[1:, ...] - t[:-1, ...]
+    excess = p - over_time(p, t) / (t[-1, ...] - t[0, ...])
+    first, last = excess[:-1, ...], excess[1:, ...]
+    energy = xp.cumulative_sum(0.5 * steps * (first + last), axis=0)
+    before = xp.concat([0 * energy[:1, ...], energy[:-1, ...]], axis=0)
+    turns = real(first) * real(last) < 0  # the extreme lies between the samples
+    rise = where(turns, 0.5 * steps * first * first / where(turns, first - last, 1.0), 0.0)
+    met = xp.concat([before[:1, ...], before + rise, energy], axis=0)
+    highest, lowest = (
+        xp.take_along_axis(met, pick(real(met), axis=0, keepdims=True), axis=0)[0, ...]
+        for pick in (xp.argmax, xp.argmin)
+    )
     return (highest - lowest) / positive(heat_capacity)

@@ -558,13 +558,15 @@ class Optimisation(Displayed):
         `evaluate` gives the same values for the saved file. Multipliers, prices and certificate are
         those of the continuous optimum.
         """
-        evaluation, value, infeasibility = (
-            self.best_evaluation,
-            self.best_objective,
-            self.infeasibility,
-        )
+        evaluation, value = self.best_evaluation, self.best_objective
+        data = evaluation.to_dict()
+        reasons: dict[str, Any] = {}
+        if self.infeasibility is not None:
+            reasons = {"infeasibility": asdict(self.infeasibility)}
+            if "duty" in data:  # said once, in the answer
+                reasons["infeasibility"]["duty_cycles"] = data["duty"].pop("shortfalls")
         return (
-            evaluation.to_dict()
+            data
             | {
                 "status": self.status,
                 "outcome": self.sentence,
@@ -588,7 +590,7 @@ class Optimisation(Displayed):
                 "seed": self.seed,
                 "seconds": self.seconds,
             }
-            | ({} if infeasibility is None else {"infeasibility": asdict(infeasibility)})
+            | reasons
             | ({} if self.robust is None else {"robust": self.robust.to_dict()})
         )
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from ..design.paths import words_of
@@ -65,13 +66,16 @@ def blocks(
     relax_safety : whether to offer lower safety factors, too, if nothing fits
     """
     evaluation, optimisation = report.parts_of(subject)
+    lacks: list[Block] = [replace(x, title="") for x in duty.shortfall_blocks(evaluation)]
     if optimisation is not None and optimisation.infeasibility is not None:
-        body = _remedies(optimisation, optimisation.infeasibility, relax_safety=relax_safety)
+        remedies = _remedies(optimisation, optimisation.infeasibility, relax_safety=relax_safety)
+        body = [lacks, *remedies]
     elif optimisation is None:
-        body = [_limits(evaluation), [*_masses(evaluation), *_others(evaluation)]]
+        body = [_limits(evaluation), lacks, [*_masses(evaluation), *_others(evaluation)]]
     else:
         body = [
             _misses(evaluation),
+            lacks,
             [*_held(optimisation), *_spare(optimisation)],
             [*_dimensions(optimisation), *_bounds(optimisation)],
         ]

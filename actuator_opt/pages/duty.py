@@ -10,10 +10,12 @@ from typing import TypeAlias
 import numpy as np
 
 from ..base.dataclass import dataclass
-from ..base.quantities import Quantity, Sense
+from ..base.quantities import INPUTS, Quantity, Sense
 from ..evaluation.duty_cycles.study import CycleStudy, DutyStudy
+from ..evaluation.duty_cycles.thermal import MEAN
 from ..evaluation.result import Evaluation
 from ..metrics import METRICS
+from ..models.wear import SHORT_STROKE
 from ..rendering.axes import per_cent
 from ..rendering.blocks import (
     Block,
@@ -28,7 +30,7 @@ from ..rendering.blocks import (
     soft,
 )
 from ..rendering.series import Series, heading
-from ..rendering.text import DASH, limit_text, number, trimmed, value_text
+from ..rendering.text import DASH, limit_text, number, pretty, trimmed, value_text
 from .duty_figures import (
     ANGLE,
     ARM,
@@ -41,13 +43,17 @@ from .duty_figures import (
     POWER,
     PRESSURE,
     SPEED,
+    TEMPERATURE,
     TORQUE,
     balance_of,
+    duration_words,
     efficiency_of,
     figure,
+    nearest,
     time_of,
     trace_of,
     value_of,
+    warming_chart,
 )
 
 MOST_SHEETS = 6
@@ -57,6 +63,9 @@ FEWEST_PARTS, MOST_PARTS = 3, 10
 not empty are listed."""
 MOST_ON_CARD = 3
 """Largest number of cycles on the card."""
+RISE = INPUTS["temperature_rise"]
+COLD = "from cold"
+"""Words after the name of a cycle in the CSV file, at the rows of its temperatures."""
 LEAST_DAMAGE = 1e-9
 """Damage at which the logarithmic bar is empty (our choice)."""
 _COLUMNS: tuple[tuple[str, str, Quantity], ...] = (
@@ -85,39 +94,64 @@ def duty_blocks(evaluation: Evaluation) -> list[Block]:
     study = evaluation.duty
     if study is None:
         return []
-    blocks: list[Block] = [_overview(study), *_fatigue(evaluation, study), _basis(study)]
+    blocks: list[Block] = [_overview(study), *_fatigue(evaluation, study), *_warming(study)]
+    blocks.append(_basis(study))
     for cycle in _shown(study):
         blocks += [figure(evaluation.lengths, study, cycle), _margins(evaluation, study, cycle)]
         blocks.append(_energies(cycle))
     return blocks
 
 
-def series(evaluation: Evaluation) -> list[Series]:
-    """Traces of all cycles, one below the other; empty without duty cycles.
-
-    A column that no cycle has is left out.
-    """
-    cycles = () if evaluation.duty is None else evaluation.duty.cycles
-    if not cycles:
+def shortfall_blocks(evaluation: Evaluation) -> list[Table]:
+    """Shortages of the duty cycles, with sufficient changes; empty if they miss no check."""
+    study = evaluation.duty
+    if study is None or not study.shortfalls:
         return []
+    rows: list[Sequence[Cell]] = [
+        [pretty(clean(words)) for words in (shortfall.reason, shortfall.cures)]
+        for shortfall in study.shortfalls
+    ]
+    columns = [
+        Column("what lacks", "left", 1.0, least=34, wraps=True),
+        Column("enough, each alone", "left", 1.0, least=34, wraps=True),
+    ]
+    note = "Enough for the duty cycles: other limits, such as strength, are not considered."
+    return [Table("What the duty cycles lack", columns, rows, note=note)]
+
+
+def series(evaluation: Evaluation) -> list[Series]:
+    """Traces of all cycles, one below the other, then the temperatures from cold; may be empty.
+
+    A column that no cycle has is left out. Rows of temperatures have no traces, and the other way
+    round.
+    """
+    study = evaluation.duty
+    if study is None:
+        return []
+    cycles, warming = study.cycles, study.warming
     names = [cycle.name for cycle in cycles for _ in cycle.time]
-    columns = [Series("cycle", names)]
-    columns.append(Series("time [s]", np.concatenate([c.time for c in cycles]).tolist(), 9))
+    names += [f"{x.name}, {COLD}" for x in warming for _ in x.time]
+    time = np.concatenate([*(x.time for x in cycles), *(x.time for x in warming)])
+    columns = [Series("cycle", names), Series("time [s]", time.tolist(), 9)]
+    cold = [np.full(x.time.size, np.nan) for x in warming]
     named = [(name, trace, quantity) for name, trace, quantity in _COLUMNS]
-    for i, seal in enumerate(next((c.severity for c in cycles), {})):
+    for i, seal in enumerate(cycles[0].severity):
         named.append((f"contact_pressure of the {seal}", f"contact{i}", PRESSURE))
     for name, trace, quantity in named:
         parts = [trace_of(cycle, trace) for cycle in cycles]
         if all(part is None for part in parts):
             continue
-        values = np.concatenate(
-            [
-                np.full(cycle.time.size, np.nan) if part is None else part
-                for cycle, part in zip(cycles, parts, strict=True)
-            ]
-        )
-        shown = quantity.to_display(1.0) * values
+        moving = [
+            np.full(cycle.time.size, np.nan) if part is None else part
+            for cycle, part in zip(cycles, parts, strict=True)
+        ]
+        shown = quantity.to_display(1.0) * np.concatenate([*moving, *cold])
         columns.append(Series(heading(name, quantity.unit), shown.tolist()))
+    moved = np.full(sum(cycle.time.size for cycle in cycles), np.nan)
+    for k, place in enumerate(warming[0].places if warming else ()):
+        kelvin = np.concatenate([moved, *(x.places[k].temperature for x in warming)])
+        values = [TEMPERATURE.to_display(float(value)) for value in kelvin]
+        columns.append(Series(heading(f"temperature of {place.name}", TEMPERATURE.unit), values))
     return columns
 
 
@@ -173,11 +207,13 @@ def _missed(cycle: CycleStudy) -> bool:
 
 def _overview(study: DutyStudy, cycles: Sequence[CycleStudy] | None = None) -> Table:
     """A row for every cycle, or for some."""
-    rows = [_overview_row(cycle) for cycle in (study.cycles if cycles is None else cycles)]
+    rowed = study.cycles if cycles is None else cycles
+    rows = [_overview_row(cycle) for cycle in rowed]
     columns = [
         Column("duty cycle", "left", 1.3, least=12),
         Column("duration", "right", drop=8),
         Column("repeats", "right", drop=9),
+        Column("strokes (short)", "right", drop=10),
         Column("reserve", "right", style="state"),
         Column("at", "right", drop=2),
         Column("opening", "right", drop=3),
@@ -186,6 +222,8 @@ def _overview(study: DutyStudy, cycles: Sequence[CycleStudy] | None = None) -> T
         Column("efficiency", "right", drop=6),
     ]
     note = "Reserve: least force left to the supply. Supply: energy per cycle."
+    if any(x.strokes for cycle in rowed for x in cycle.short_strokes.values()):
+        note += f" Short: below {SHORT_STROKE:g} contact widths of a seal, which starves it of oil."
     if study.opening_limit is not None:
         share = limit_text(OPENING, "max", study.opening_limit)[2:]
         note = note.replace("supply.", f"supply with the valve at most {share} open.", 1)
@@ -204,6 +242,7 @@ def _overview_row(cycle: CycleStudy) -> Row:
         soft(cycle.name),
         f"{number(float(np.ptp(cycle.time)), 3)} s",
         DASH if cycle.repeats is None else trimmed(cycle.repeats, 3),
+        _strokes(cycle),
         value_of(FORCE, reserve.value),
         time_of(cycle, reserve.sample),
         _opening(cycle),
@@ -212,6 +251,12 @@ def _overview_row(cycle: CycleStudy) -> Row:
         efficiency_of(cycle),
     ]
     return Row(cells, "missed" if _missed(cycle) else "met")
+
+
+def _strokes(cycle: CycleStudy) -> str:
+    """Strokes between reversals, and how many of them starve a seal."""
+    short = max((x.strokes for x in cycle.short_strokes.values()), default=0)
+    return f"{cycle.reversals} ({short})" if short else str(cycle.reversals)
 
 
 Limit: TypeAlias = tuple[Sense, float]
@@ -387,6 +432,55 @@ def _fatigue(evaluation: Evaluation, study: DutyStudy) -> Iterator[Table]:
         named = ", ".join(clean(cycle.name) for cycle in unstated)
         notes.append(f"Without repeats, so not counted: {named}.")
     yield Table("Duty cycles: fatigue damage of a life", columns, rows, note=" ".join(notes))
+
+
+def _warming(study: DutyStudy) -> Iterator[Block]:
+    """Temperatures from cold as a figure, and the places nearest to their limits."""
+    if not study.warming:
+        return
+    rows = []
+    for warming in study.warming:
+        worst = nearest(warming)
+        crossed = [place for place in warming.places if place.crossed is not None]
+        for place in sorted(crossed, key=lambda x: x.crossed or 0.0) or [worst]:
+            limit = DASH if place.limit is None else limit_text(TEMPERATURE, "max", place.limit)
+            cells: list[Cell] = [
+                soft(warming.name),
+                duration_words(warming.time_constant),
+                value_of(RISE, warming.ripple),
+                soft(place.name),
+                limit,
+                value_of(TEMPERATURE, place.steady),
+                DASH if place.crossed is None else f"after {duration_words(place.crossed)}",
+                value_of(TEMPERATURE, place.after_mission),
+            ]
+            rows.append(Row(cells, "missed" if place.crossed is not None else "met"))
+    columns = [
+        Column("under", "left", 1.0, least=10),
+        Column("time constant", "right", drop=3),
+        Column("ripple", "right", drop=5),
+        Column("nearest its limit", "left", 1.3, least=16),
+        Column("limit", "right", drop=2),
+        Column("steady", "right", style="state"),
+        Column("exceeded", "right", drop=1),
+        Column("end of mission", "right", drop=4),
+    ]
+    first = study.warming[0]
+    if first.mission is None:
+        columns, rows = columns[:-1], [Row(row.cells[:-1], row.state) for row in rows]
+    under = "each cycle" if first.name != MEAN else "all cycles of the life, weighted by their time"
+    if first.name != MEAN and len(study.warming) > 1:
+        under += ", repeated alone without end"
+    start = value_of(TEMPERATURE, first.start)
+    note = (
+        f"All parts begin at {start}, as warm as the air. Heat enters as the mean of {under}. "
+        "Time constant: the slowest; after five of them 99 % of the rise is reached. Ripple: no "
+        "temperature deviates further from its curve within a period. Coefficients are those of "
+        "the steady state, so that a curve errs by less than 10 % of its rise."
+    )
+    yield warming_chart(study, "")
+    title = "Duty cycles: limits of temperature"
+    yield Table(title, columns, rows, note=note)
 
 
 def _basis(study: DutyStudy) -> Notes:

@@ -1,4 +1,4 @@
-"""Figure of a duty cycle: traces over time, force over speed, energies, and the linkage."""
+"""Figures of duty cycles: traces over time, force over speed, energies, linkage, temperatures."""
 
 from __future__ import annotations
 
@@ -11,7 +11,13 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..base.quantities import INPUTS, SCENARIOS, Quantity
-from ..evaluation.duty_cycles.study import CycleStudy, DutyStudy, LinkageSize
+from ..evaluation.duty_cycles.study import (
+    CycleStudy,
+    DutyStudy,
+    LinkageSize,
+    Warming,
+    WarmingPlace,
+)
 from ..metrics import METRICS
 from ..rendering.axes import even_range, time_words
 from ..rendering.blocks import Chart, TerminalFigure, clean
@@ -36,6 +42,11 @@ NEAR = 2.5
 choice)."""
 ENLARGED = 0.4
 """A cycle that spans less of the plane of force and speed than this is also drawn enlarged."""
+MOST_PANELS = 3
+"""Largest number of cycles in the figure of temperatures, those with the least reserve."""
+LONG = 600.0
+"""Time from which minutes replace seconds [s]; 60 times as much, from which hours do."""
+WARMING_TITLE = "Duty cycles: temperatures from cold"
 PROFILE = 400
 """Points of the curve on the terminal."""
 CYCLE, RESERVE, MEAN, LIMIT, CONSTANT = 0, 1, 2, 4, 5
@@ -47,6 +58,7 @@ ANGLE, TORQUE, ARM = INPUTS["joint_angle"], INPUTS["torque"], INPUTS["lever_arm"
 LENGTH, PRESSURE, SPEED = INPUTS["position"], INPUTS["pressure"], SCENARIOS["speed_value"]
 FORCE, FLOW, POWER = (METRICS[f"duty_{x}"] for x in ("force_margin", "flow_peak", "power_peak"))
 OPENING, ENERGY = METRICS["duty_opening"], METRICS["duty_supply_energy"]
+TEMPERATURE = INPUTS["temperature"]
 EFFICIENCY, DAMAGE = METRICS["duty_efficiency"], METRICS["duty_fatigue"]
 _SPLIT: tuple[tuple[str, str, float], ...] = (
     ("supply", "supply_energy", 1.0),
@@ -444,3 +456,118 @@ def _draw_pose(
     ):  # fmt: skip
         below = spot[1] + pin + 2.4
         ink.text(spot[0] + dx, below, words, size=6.0, anchor="center", color=GREY, halo=True)
+
+
+# ---- temperatures from cold ----
+
+
+def duration_words(seconds: float) -> str:
+    """A time in seconds, minutes or hours.
+
+    >>> duration_words(62.27), duration_words(900.0), duration_words(7200.0)
+    ('62.3 s', '15.0 min', '2.00 h')
+    """
+    unit, factor = _time_unit(seconds)
+    return f"{number(factor * seconds, 3)} {unit}"
+
+
+def _time_unit(seconds: float) -> tuple[str, float]:
+    """Unit for times up to this one, and the factor from seconds."""
+    if seconds < LONG:
+        return "s", 1.0
+    return ("min", 1 / 60) if seconds < LONG * 60 else ("h", 1 / 3600)
+
+
+def warming_name(warming: Warming) -> str:
+    """The cycle under which the actuator warms up, or "mean of all cycles"."""
+    return clean(warming.name)
+
+
+def nearest(warming: Warming) -> WarmingPlace:
+    """The place nearest to its limit when steady; the hottest where no limit is known."""
+    limited = [place for place in warming.places if place.limit is not None]
+    if not limited:
+        return max(warming.places, key=lambda place: place.steady)
+    return min(limited, key=lambda place: (place.limit or 0.0) - place.steady)
+
+
+def warming_chart(study: DutyStudy, note: str) -> Chart:
+    """Temperatures of oil, wall and rod from cold; a panel for each cycle with little reserve."""
+    ranked = sorted(study.warming, key=lambda warming: warming.reserve)[:MOST_PANELS]
+    shown = [warming for warming in study.warming if any(warming is x for x in ranked)]
+    panels = [_warming_panel(warming) for warming in shown]
+    worst = ranked[0]
+    place = nearest(worst)
+    span = float(worst.time[-1])
+    level = None if place.limit is None else TEMPERATURE.to_display(place.limit)
+    figure = TerminalFigure(
+        f"{warming_name(worst)}: {clean(place.name)} from cold, {unit_text(TEMPERATURE.unit)}",
+        list(zip(worst.time.tolist(), _shown(place.temperature).tolist(), strict=True)),
+        level,
+        ("0", duration_words(span)),
+    )
+    key = [Curve(words, [], [], style=k) for k, (words, _) in enumerate(_curves_of(worst))]
+    return Chart(WARMING_TITLE, panels, note, instead=figure, height=58.0, key=key)
+
+
+def _shown(kelvin: Array) -> Array:
+    """Temperatures in the unit of figures."""
+    return np.array([TEMPERATURE.to_display(float(value)) for value in kelvin])
+
+
+def _warming_panel(warming: Warming) -> Panel:
+    """Temperatures under one cycle, their limits, and when they exceed them."""
+    unit, factor = _time_unit(float(warming.time[-1]))
+    time = factor * warming.time
+    places = _curves_of(warming)
+    curves = [
+        Curve("", time, _shown(place.temperature), style=k) for k, (_, place) in enumerate(places)
+    ]
+    start = TEMPERATURE.to_display(warming.start)
+    highest = max(float(np.max(curve.ys)) for curve in curves)
+    limits = dict.fromkeys(place.limit for place in warming.places if place.limit is not None)
+    levels = [
+        Level(TEMPERATURE.to_display(limit), limit_text(TEMPERATURE, "max", limit), "max")
+        for limit in limits
+        if TEMPERATURE.to_display(limit) - start <= NEAR * (highest - start)
+    ]
+    if warming.mission is not None and warming.mission < warming.time[-1]:
+        end = factor * warming.mission
+        levels.append(Level(end, "end of the mission", style=RESERVE, upright=True))
+    crossings = {
+        (place.crossed, place.limit)
+        for place in warming.places
+        if place.limit is not None and place.crossed is not None
+        if place.crossed <= warming.time[-1]
+    }
+    points = [
+        Points(
+            "",
+            [factor * crossed],
+            [TEMPERATURE.to_display(limit)],
+            style=FILLED,
+            labels=[duration_words(crossed)],
+        )
+        for crossed, limit in sorted(crossings)
+    ]
+    return Panel(
+        f"{warming_name(warming)}: temperature, {unit_text(TEMPERATURE.unit)}",
+        Axis(f"time, {unit}", range=(0.0, float(time[-1]))),
+        Axis(range=even_range([start, highest, *(x.value for x in levels if not x.upright)])),
+        curves=curves,
+        points=points,
+        levels=levels,
+    )
+
+
+def _curves_of(warming: Warming) -> list[tuple[str, WarmingPlace]]:
+    """Curves of a panel with their names: oil, rod, innermost layer, and the layer worst off."""
+    places = {place.name: place for place in warming.places}
+    layers = [place for place in warming.places if place.name.startswith("layer ")]
+    limited = [place for place in layers if place.limit is not None]
+    worst = min(limited, key=lambda p: (p.limit or 0.0) - p.steady, default=layers[0])
+    chosen = [("oil", places["oil"]), ("rod and its seals", places["rod seal"])]
+    for layer in dict.fromkeys((layers[0].name, worst.name)):
+        seals = " and the piston's seals" if layer == layers[0].name else ""
+        chosen.append((f"inside of {clean(layer)}{seals}", places[layer]))
+    return chosen

@@ -31,6 +31,8 @@ REQUIREMENTS = "Requirements"
 NO_RESERVE = f"No reserve: met, with a margin below {100 * result.NO_RESERVE:g} %"
 FAR = 1.0
 """Margin from which a place is not listed. Our choice: twice the limit."""
+MOST_PLACES = 4
+"""Places that are listed of one limit, the worst first; one more is listed instead of counted."""
 FLAG = " (!)"
 """Mark of a quantity whose model is used outside its valid range."""
 FLAGGED = "(!) EXTRAPOLATED: a model was used outside its valid range"
@@ -245,7 +247,7 @@ def _open_checks(evaluation: Evaluation, title: str) -> Block:
 
 
 def places(evaluation: Evaluation) -> Iterator[Block]:
-    """Every place of a limit that several places have to meet, the worst first."""
+    """The worst places of every limit that several places have to meet; the others are counted."""
     stated: Sequence[Requirement | Check] = (*evaluation.requirements, *evaluation.checks)
     limits = {
         row.metric: (row.name if isinstance(row, Check) else "", row.sense, row.limit)
@@ -264,7 +266,8 @@ def places(evaluation: Evaluation) -> Iterator[Block]:
         }
         near = sorted((m, place) for place, m in margins.items() if m < FAR)
         left_out += len(margins) - len(near)
-        for count, (distance, place) in enumerate(near):
+        listed = len(near) if len(near) <= MOST_PLACES + 1 else MOST_PLACES
+        for count, (distance, place) in enumerate(near[:listed]):
             cells: list[Cell] = [
                 clean(label) if count == 0 else "",
                 clean(place) or DASH,
@@ -273,6 +276,9 @@ def places(evaluation: Evaluation) -> Iterator[Block]:
                 text.margin_of(quantity, bound, distance, met=distance >= -NO_ROOM),
             ]
             rows.append(Row(cells))
+        if more := near[listed:]:
+            next_margin = text.margin_of(quantity, bound, more[0][0], met=more[0][0] >= -NO_ROOM)
+            rows.append(Row(["", f"{len(more)} more", "", "", f"from {next_margin}"]))
     if not rows:
         return
     columns = [

@@ -120,6 +120,7 @@ def prices_page(optimisation: Optimisation) -> Page:
     blocks = prices.price_blocks(optimisation, moving=True)
     if not blocks and optimisation.infeasibility is not None:
         blocks = optimum.infeasibility_blocks(optimisation.infeasibility)
+        blocks += duty.shortfall_blocks(optimisation.best_evaluation)
     return Page(
         name=optimisation.best_evaluation.name,
         kind="Prices",
@@ -166,6 +167,7 @@ def _opening(
         yield Notes("Missed", words, headless=True, style="red", on="terminal")
     if optimisation is not None and optimisation.infeasibility is not None:
         yield from optimum.infeasibility_blocks(optimisation.infeasibility)
+    yield from duty.shortfall_blocks(evaluation)
     yield limits.requirements(evaluation, shown=optimisation is not None, labelled=labelled)
     if optimisation is None:
         yield from limits.quantities(evaluation)

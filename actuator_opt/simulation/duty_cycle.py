@@ -129,7 +129,7 @@ def _resampled(cycle: DutyCycle, subject: PreparedDesign) -> CycleStudy:
     models, numbers = duty_numbers(subject, subject.values())
     record = models.records[cycle.name].resampled(SAMPLES + 1)
     finer = CycleModels(models.plan, {**models.records, cycle.name: record}, models.names)
-    return next(x for x in study(finer, numbers[:, 0], ()).cycles if x.name == cycle.name)
+    return next(x for x in study(finer, numbers[:, 0]).cycles if x.name == cycle.name)
 
 
 def _require_positions(
@@ -317,7 +317,7 @@ def compare(
     if cycle is None:
         return None
     models, numbers = duty_numbers(subject, subject.values())
-    cycles = study(models, numbers[:, 0], ()).cycles
+    cycles = study(models, numbers[:, 0]).cycles
     static = next(x for x in cycles if x.name == cycle.name)
     period = float(static.time[-1] - static.time[0])
     whole = floor(scenario.duration / period * (1 + 1e-9)) if cycle.closed else 1

@@ -162,6 +162,53 @@ def test_init_refuses_a_cycle_that_it_cannot_use(tmp_path):
     low.write_text("time [s],position [mm],force [N]\n0,5,1\n1,6,1\n")
     with pytest.raises(InputError, match="2 samples"):
         cycle_start(low)
-    result = run("init", "--cycle", low, "--from", "designs/knee.yaml")
-    assert result.code == 2
-    assert "use only one of them" in result.err
+    for other in (("--scenario", "designs/knee.yaml"), ("--from", "x.yaml", "--push", "5 kN")):
+        result = run("init", "--cycle", low, *other)
+        assert result.code == 2
+        assert "use only one of them" in result.err
+
+
+def test_init_adds_a_cycle_to_a_copy_of_a_design_with_a_linkage(tmp_path):
+    """The linkage gives position and lever arm; a second cycle follows the first."""
+    first, second = tmp_path / "a.yaml", tmp_path / "b.yaml"
+    source = tmp_path / "knee.yaml"
+    knee = Path("designs/knee.yaml").read_text(encoding="utf-8")
+    source.write_text(
+        f"{knee}linkage: {{base_radius: 240 mm, crank_radius: 62 mm, angle_offset: 120 deg}}\n"
+    )
+    made = run("init", "--from", source, "--cycle", CYCLES / "gait_knee.csv", "--out", first)
+    assert made.code == 0, made.err
+    design = ao.read(first).design
+    (cycle,) = design.duty.cycles
+    assert (cycle.name, cycle.lever_arm) == ("gait_knee", None)
+    assert design.linkage.crank_radius == pytest.approx(0.062)
+    assert len(design.variables) == len(ao.read("designs/knee.yaml").design.variables)
+    made = run("init", "--from", first, "--cycle", CYCLES / "run_knee.csv", "--out", second)
+    assert "single samples far off" in made.err
+    assert [x.name for x in ao.read(second).design.duty.cycles] == ["gait_knee", "run_knee"]
+    again = run("init", "--from", second, "--cycle", CYCLES / "run_knee.csv", "--out", "-")
+    assert again.code == 2
+    assert "has a cycle or load case 'run_knee' already; rename the CSV file" in again.err
+
+
+def test_init_says_what_a_joined_cycle_lacks(tmp_path):
+    """The file is written; a rod that must go too far names the stroke that is enough."""
+    far = tmp_path / "far.csv"
+    far.write_text("time [s],position [mm],force [N]\n0,5,1\n1,60,1\n2,125,1\n3,60,1\n4,5,1\n")
+    target = tmp_path / "far.yaml"
+    made = run("init", "--from", "designs/knee.yaml", "--cycle", far, "--out", target)
+    assert made.code == 1
+    assert "the cycle does not fit yet" in made.err
+    assert "too little travel: the piston would be 15 mm beyond the extended stop" in made.err
+    assert ao.read(target).design.duty.cycles[0].name == "far"
+
+
+def test_init_needs_a_linkage_or_a_lever_arm_for_a_joint():
+    """The knee alone has neither; the lever arm may be stated beside the copied design."""
+    known = "init", "--from", "designs/knee.yaml", "--cycle", CYCLES / "gait_knee.csv", "--out", "-"
+    made = run(*known)
+    assert made.code == 2
+    assert "or --from a design with a linkage" in made.err
+    made = run(*known, "--lever-arm", "50 mm")
+    assert made.code == 0
+    assert yaml.safe_load(made.out)["duty"]["cycles"][0]["lever_arm"] == "50 mm"

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from actuator_opt.models import rainflow, supply_sizing
+from counted_cycles import cycle_stress
+
+from actuator_opt.models import rainflow
 
 COUNTS = {"wear.strokes": "counts the strokes of one history, laws of its own"}
 """Functions whose results are counts."""
@@ -14,18 +16,7 @@ FLOW = (1e-5, 6e-5, 3e-5, 0.5e-5, 1.1e-5)
 
 
 def _stress_of_cycles(history):
-    cycles = rainflow.repeating_cycles(history=history)
-    return rainflow.cycle_stress(history=history, cycles=cycles)
-
-
-def _stress_of_change(history):
-    cycles = rainflow.change_cycle(history=history, changes=3.0)
-    return rainflow.cycle_stress(history=history, cycles=cycles)
-
-
-def _flow_of_two(first, second):
-    times = [TIME, (0.0, 0.5, 0.7, 1.0)]
-    return supply_sizing.total_flow(times=times, flows=[first, second], phases=[0.0, 0.3]).flow
+    return cycle_stress(history, rainflow.repeating_cycles(history=history))
 
 
 HISTORY = {"history": STRESS}
@@ -49,9 +40,6 @@ SAMPLES = {
     "quasi_static.speed_limit": {"edge_drop": 13.8787e6, "driven_area": 4.15476e-4, **_EDGE},
     "quasi_static.needed_supply": {"speed": 0.38, "opening": 0.9, **_LOAD, **_EDGE},
     "rainflow.repeating_cycles": (_stress_of_cycles, HISTORY),
-    "rainflow.cycle_stress": (_stress_of_cycles, HISTORY),
-    "rainflow.change_cycle": (_stress_of_change, HISTORY),
-    "rainflow.start_stress": [HISTORY, {"history": (-3e8, *STRESS)}],
     "endurance.reversed_amplitude": [
         {"amplitude": 90e6, "mean": mean, "ultimate_strength": 570e6} for mean in (80e6, -80e6)
     ],
@@ -67,9 +55,7 @@ SAMPLES = {
     "wear.wear_share": {"depth": 37e-6, "allowed_depth": 50e-6},
     "wear.pressure_velocity": [{"contact_pressure": 18e6, "speed": v} for v in (0.2, -0.2)],
     "accumulator.gas_volume_needed": [{**GAS, "low_pressure": low} for low in (190e5, 60e5)],
-    "supply_sizing.mean_flow": {"time": TIME, "flow": FLOW},
     "supply_sizing.ripple_volume": {"time": TIME, "flow": FLOW},
-    "supply_sizing.total_flow": (_flow_of_two, {"first": FLOW, "second": FLOW[:4]}),
     "supply_sizing.electric_power": {
         "hydraulic_power": 1043.0, "pump_efficiency": 0.85, "motor_efficiency": 0.9,
     },

@@ -23,6 +23,12 @@ def steady_state(*, air, **wall):
     return network.steady_temperatures(network=made, surroundings=air)
 
 
+def faces(*, warm, middles, **wall):
+    """Inner faces of the wall of a network that is made here, between temperatures of its nodes."""
+    made = network.thermal_network(**wall)
+    return network.inner_faces(network=made, oil=warm, layers=middles)
+
+
 SAMPLES = {
     "heat_transfer.air_properties": {"temperature": 310.0, "absolute_pressure": 9e4},
     "heat_transfer.laminar_nusselt": [{"graetz_number": g} for g in (2.0, 1.5e4)],
@@ -65,11 +71,14 @@ SAMPLES = {
             Surroundings(293.0, film_coefficient=40.0),
         )
     ],
+    "thermal_network.inner_faces": (
+        faces, {"oil": OIL, "warm": 330.0, "middles": (320.0, 310.0, 305.0), **WALL},
+    ),
     "thermal_network.ripple_bound": {
         "time": (0.1, 1.0, 2.0, 3.0), "power": (0.5, 8.0, 2.0, 1.0), "heat_capacity": 10.0,
     },
 }  # fmt: skip
 REPORTS = dict.fromkeys(
     ("thermal_network.temperatures_after", "thermal_network.slowest_time_constant"),
-    "matrix exponential and eigenvalues of a single design, for reports",
+    "modes and eigenvalues of a single design, for reports",
 )

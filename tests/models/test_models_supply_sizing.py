@@ -16,10 +16,8 @@ flows = st.lists(st.floats(0.0, 1e-4), min_size=3, max_size=12)
 
 
 def test_worked_example():
-    """Mean flow, ripple volume with its samples, and gas volume."""
+    """Ripple volume with its samples, and gas volume."""
     ripple = supply_sizing.ripple_volume(time=TIME, flow=FLOW)
-    mean = supply_sizing.mean_flow(time=TIME, flow=FLOW)
-    assert mean == pytest.approx(2.625e-5, rel=SIX_DIGITS)
     assert ripple.volume == pytest.approx(7.375e-6, rel=SIX_DIGITS)
     assert (ripple.largest, ripple.smallest) == (2, 0)
     gas = accumulator.gas_volume_needed(oil_volume=ripple.volume, **PRESSURES)
@@ -65,11 +63,10 @@ def test_impossible_numbers_are_nan():
 
 
 def test_ripple_of_a_sine():
-    """A flow q (1 + sin wt) needs q T/pi; its mean is q."""
+    """A flow q (1 + sin wt) needs q T/pi."""
     period, level = 1.7, 3e-5
     t = np.linspace(0.0, period, 401)
     flow = level * (1 + np.sin(2 * np.pi * t / period))
-    assert supply_sizing.mean_flow(time=t, flow=flow) == pytest.approx(level, rel=1e-12)
     ripple = supply_sizing.ripple_volume(time=t, flow=flow)
     assert ripple.volume == pytest.approx(level * period / np.pi, rel=1e-4)
     assert t[[ripple.largest, ripple.smallest]] == pytest.approx([period / 2, 0.0])
@@ -100,17 +97,17 @@ def test_ripple_does_not_depend_on_the_beginning(flow, data):
     assert found[1] == pytest.approx(found[0], rel=1e-9, abs=1e-18)
 
 
-def test_slopes_of_ripple_and_mean():
-    """Complex steps against central differences, for times and flows."""
+def test_slopes_of_the_ripple():
+    """Complex steps against central differences."""
 
-    def both(flow):
-        ripple = supply_sizing.ripple_volume(time=np.array(TIME), flow=flow)
-        return np.array([ripple.volume, supply_sizing.mean_flow(time=np.array(TIME), flow=flow)])
+    def volume(flow):
+        return supply_sizing.ripple_volume(time=np.array(TIME), flow=flow).volume
 
     base = np.array(FLOW)[:, None]
-    slopes = np.imag(both(base + 1e-30j * np.eye(5))) / 1e-30
+    slopes = np.imag(volume(base + 1e-30j * np.eye(5))) / 1e-30
     step = 1e-8 * np.eye(5)
-    np.testing.assert_allclose(slopes, (both(base + step) - both(base - step)) / 2e-8, atol=1e-8)
+    differences = (volume(base + step) - volume(base - step)) / 2e-8
+    np.testing.assert_allclose(slopes, differences, atol=1e-8)
 
 
 def test_simulated_accumulator_keeps_its_pressures():
@@ -118,7 +115,7 @@ def test_simulated_accumulator_keeps_its_pressures():
     t = np.linspace(0.0, 1.0, 201)
     flow = 4e-5 * np.maximum(0.0, np.sin(2 * np.pi * t)) + 1e-5 * np.sin(np.pi * t) ** 2
     ripple = supply_sizing.ripple_volume(time=t, flow=flow)
-    mean = supply_sizing.mean_flow(time=t, flow=flow)
+    mean = np.trapezoid(flow, t)
     gas = {"precharge_pressure": 171e5}
     shell = accumulator.gas_volume_needed(oil_volume=ripple.volume, **PRESSURES)
     volume = accumulator.gas_volume_at(pressure=210e5, gas_volume=shell, **gas)
@@ -149,49 +146,6 @@ def test_gas_volume_inverts_the_usable_volume(low, ratio, precharge, index):
         assert shell == pytest.approx(2e-5 / (filled * (growth - 1)), rel=1e-9)
     else:
         assert shell == pytest.approx(2e-5 / (1 - filled), rel=1e-9)
-
-
-@given(flows, st.integers(0, 11), st.integers(-2, 2))
-def test_phase_keeps_mean_and_ripple(flow, shift, turns):
-    """One actuator that runs later by some samples needs the same pump and accumulator."""
-    closed = [*flow, flow[0]]
-    t = np.linspace(2.0, 3.5, len(closed))
-    phase = turns + shift / len(flow)
-    moved = supply_sizing.total_flow(times=[t], flows=[closed], phases=[phase])
-    assert (moved.time[0], moved.time[-1]) == (0.0, 1.5)
-    mean = supply_sizing.mean_flow(time=t, flow=closed)
-    assert supply_sizing.mean_flow(**moved._asdict()) == pytest.approx(mean, rel=1e-9, abs=1e-18)
-    ripple = supply_sizing.ripple_volume(time=t, flow=closed).volume
-    found = supply_sizing.ripple_volume(**moved._asdict()).volume
-    assert found == pytest.approx(ripple, rel=1e-9, abs=1e-18)
-
-
-@given(flows, st.floats(0.0, 1.0))
-def test_any_phase_keeps_the_mean(flow, phase):
-    """The samples of the sum hold every corner of the flows, so that the mean is exact."""
-    closed = [*flow, flow[0]]
-    t = np.linspace(0.0, 1.5, len(closed)) ** 1.2
-    moved = supply_sizing.total_flow(times=[t], flows=[closed], phases=[phase])
-    mean = supply_sizing.mean_flow(time=t, flow=closed)
-    assert supply_sizing.mean_flow(**moved._asdict()) == pytest.approx(mean, rel=1e-9, abs=1e-15)
-
-
-def test_second_leg_smooths_the_supply():
-    """Half a period later a sine cancels the first; the flow arrives late, not early."""
-    t = np.linspace(0.0, 1.0, 41)
-    flow = 1e-5 * (1 + np.sin(2 * np.pi * t))
-    both = supply_sizing.total_flow(times=[t, t], flows=[flow, flow], phases=[0.0, 0.5])
-    np.testing.assert_allclose(both.flow, 2e-5, rtol=1e-12)
-    late = supply_sizing.total_flow(times=[t], flows=[flow], phases=[0.25])
-    assert late.time[np.argmax(late.flow)] == pytest.approx(0.5)
-    columns = supply_sizing.total_flow(times=[t], flows=[np.outer(flow, [1.0, 3.0])], phases=[0.25])
-    np.testing.assert_allclose(columns.flow, np.outer(late.flow, [1.0, 3.0]))
-
-
-def test_flows_of_unlike_periods_do_not_add():
-    """A walk and a run have no common period."""
-    with pytest.raises(ValueError, match="periods differ"):
-        supply_sizing.total_flow(times=[[0, 1], [0, 2]], flows=[[0, 0], [0, 0]], phases=[0, 0])
 
 
 def test_system_mass_is_a_sum_or_nothing():

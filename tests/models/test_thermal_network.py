@@ -249,6 +249,42 @@ def test_transient_is_that_of_an_integrated_network(exchange):
         assert found == pytest.approx(expected, rel=1e-8)
 
 
+def test_inner_faces_lie_where_the_heat_flow_puts_them():
+    """By the film on the oil's side, and by half of each layer's own resistance between layers."""
+    network = worked()
+    oil, layers = 330.0, [320.0, 310.0, 305.0]
+    first, *others = thermal_network.inner_faces(network=network, oil=oil, layers=layers)
+    film = heat_transfer.film_resistance(
+        film_coefficient=network.oil.film_coefficient,
+        area=math.pi * SIZES["bore"] * SIZES["wetted_length"],
+    )
+    assert first == pytest.approx(oil - film * network.conductances[0] * (oil - layers[0]))
+    radius, halves = SIZES["bore"] / 2, []
+    for layer in WALL:
+        outer = radius + layer.thickness
+        halves.append(
+            math.log(outer / radius) / (4 * math.pi * SIZES["length"] * layer.conductivity)
+        )
+        radius = outer
+    for k, face in enumerate(others):
+        flow = (layers[k] - layers[k + 1]) / (halves[k] + halves[k + 1])
+        assert face == pytest.approx(layers[k] - flow * halves[k])
+
+
+def test_many_times_at_once_are_those_one_by_one():
+    """An array of times gives arrays; a number gives numbers."""
+    network = with_parts()
+    steady = thermal_network.steady_temperatures(
+        network=network, surroundings=Surroundings(AMBIENT)
+    )
+    pair = {"network": network, "steady": steady, "start": [AMBIENT]}
+    times = np.array([[0.0, 30.0], [400.0, 6000.0]])
+    found = thermal_network.temperatures_after(time=times, **pair)
+    for (i, k), time in np.ndenumerate(times):
+        one = thermal_network.temperatures_after(time=float(time), **pair)
+        assert [node[i, k] for node in found] == pytest.approx(one, rel=1e-12)
+
+
 def test_slowest_time_constant_is_the_last_decay():
     """Late on, the distance to the steady state falls by e in one time constant."""
     network = with_parts()

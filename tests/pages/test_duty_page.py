@@ -4,22 +4,27 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pytest
 from cli_runner import DESIGNS, run
 from duty_page_case import FLIGHT, GAIT, RUN, cycle, design, evaluated
+from report_fixture import build_infeasible
 
 import actuator_opt as ao
+from actuator_opt.base.tables import encoded
+from actuator_opt.evaluation.duty_cycles.warming import POINTS
 from actuator_opt.models.linkage import linkage
-from actuator_opt.pages import card, duty, duty_figures, report
+from actuator_opt.pages import card, duty, duty_figures, limits, report
 from actuator_opt.rendering import html, terminal
 from actuator_opt.rendering.blocks import Chart, Notes, Table
 from actuator_opt.rendering.chart_ink import drawn
 from actuator_opt.rendering.console import visible
 from actuator_opt.rendering.ink import Ink
 from actuator_opt.rendering.series import csv_text
+from actuator_opt.rendering.text import value_text
 
 WALK = cycle("walk", GAIT, repeats="5e6", starts="2000")
 HURRY = cycle("run", RUN, torque_scale="1.2", time_scale="0.9")
@@ -59,8 +64,15 @@ def tables(evaluation):
 
 
 def charts(evaluation):
-    """All figures of duty cycles."""
-    return [x for x in duty.duty_blocks(evaluation) if isinstance(x, Chart)]
+    """The figures of single duty cycles."""
+    shown = [x for x in duty.duty_blocks(evaluation) if isinstance(x, Chart)]
+    return [x for x in shown if x.title.startswith("Duty cycle ")]
+
+
+def warming(evaluation):
+    """The figure of temperatures from cold."""
+    (figure,) = (x for x in duty.duty_blocks(evaluation) if x.title == duty_figures.WARMING_TITLE)
+    return figure
 
 
 def titles(chart):
@@ -203,7 +215,7 @@ def test_the_figure_shows_what_the_cycle_has():
 def test_every_figure_keeps_its_words_apart_and_inside():
     """No word leaves the paper; curves are thinned to what the pen can show."""
     for evaluation in map(case, DESIGNS_OF):
-        for chart in charts(evaluation):
+        for chart in (*charts(evaluation), warming(evaluation)):
             ink = drawn(chart)
             for words, left, top, right, bottom in ink.text_boxes():
                 assert -1 < left < right < ink.width + 1, words
@@ -323,8 +335,106 @@ def test_the_traces_are_written_as_csv():
     assert "contact_pressure of the rod seal [bar]" in columns
     text = csv_text(duty.series(case("hard")))
     assert "joint_angle" not in text
-    assert len(text.splitlines()) == 1 + 10
+    assert len(text.splitlines()) == 1 + 10 + 2 * POINTS
     assert ",inf," in text or ",," in text  # past stall there is no opening
+
+
+def test_temperatures_follow_the_traces_in_the_csv_file():
+    """Rows of their own, named after the cycle, without traces."""
+    two = case("two")
+    columns = {column.head: column.values for column in duty.series(two)}
+    rows = sum(cycle.time.size for cycle in two.duty.cycles)
+    names = [f"{name}, from cold" for name in ("walk", "run") for _ in range(POINTS)]
+    assert columns["cycle"][rows:] == names
+    run = two.duty.warming[1]
+    assert columns["time [s]"][-POINTS:] == pytest.approx(run.time)
+    for place in run.places:
+        own = columns[f"temperature of {place.name} [degC]"]
+        assert own[-POINTS:] == pytest.approx(place.temperature - 273.15)
+        assert np.isnan(own[:rows]).all()
+    assert np.isnan(columns["force [N]"][rows:]).all()
+
+
+def test_a_panel_shows_temperatures_limits_and_when_they_are_exceeded():
+    """A mark where the plies reach their limit; the table names the place and the time."""
+    text = design(WALK)
+    soft = ao.evaluate(ao.read(text, set={"materials.t700_epoxy.temperature_max": "45 degC"}))
+    first = soft.duty.warming[0]
+    panel = warming(soft).panels[0]
+    assert panel.title == "walk: temperature, °C"
+    assert len(panel.curves) == len(warming(soft).key) == 4
+    assert panel.curves[0].ys == pytest.approx(first.places[-3].temperature - 273.15)  # the oil
+    assert any(level.value == pytest.approx(45.0) for level in panel.levels)
+    crossed = [place for place in first.places if place.crossed is not None]
+    assert [x.ys for x in panel.points] == [[pytest.approx(45.0)]] * len(crossed)
+    marks = {(*x.xs, *x.labels) for x in panel.points}
+    assert marks == {(x.crossed, duty_figures.duration_words(x.crossed)) for x in crossed}
+    rows = tables(soft)["Duty cycles: limits of temperature"].rows
+    assert [row.state for row in rows] == ["missed"] * len(rows)
+    own = [row.cells for row in rows if row.cells[0] == "walk"]
+    assert [row[3] for row in own] == [x.name for x in sorted(crossed, key=lambda x: x.crossed)]
+    assert own[0][6] == f"after {duty_figures.duration_words(min(x.crossed for x in crossed))}"
+    assert own[0][1] == duty_figures.duration_words(first.time_constant)
+    calm = tables(case("walk"))["Duty cycles: limits of temperature"]
+    assert [(row.state, row.cells[6]) for row in calm.rows] == [("met", "–")]
+    assert "begin at 20.0 °C, as warm as the air" in calm.note
+
+
+def test_what_lacks_is_shown_once():
+    """In the first blocks of page and card and in JSON, not among the warnings."""
+    hard = case("hard")
+    (table,) = duty.shortfall_blocks(hard)
+    assert len(table.rows) == len(hard.duty.shortfalls) > 1
+    first = hard.duty.shortfalls[0]
+    assert (first.cycle, first.lacks, first.time) == ("hard", "force", 0.3)
+    assert not [text for text in hard.warnings if "too little force" in text]
+    for blocks in (report.page(hard).blocks, card.blocks(hard)):
+        text = terminal.blocks_text(blocks, width=100, colour=False, unicode=True)
+        assert text.count("too little force") == sum(
+            x.lacks == "force" for x in hard.duty.shortfalls
+        )
+    data = hard.to_dict()["duty"]["shortfalls"]
+    assert data[0]["sentence"] == first.sentence
+    assert {*data[0]["remedies"][0]} == {"path", "now", "needed"} if data[0]["remedies"] else True
+    assert duty.shortfall_blocks(case("walk")) == []
+
+
+def test_the_answer_of_an_infeasible_search_says_what_the_cycles_lack():
+    """In JSON it is part of `infeasibility`, and of nothing else; on the card it comes first."""
+    hard = case("hard")
+    optimum = replace(build_infeasible(), evaluation=hard)
+    data = optimum.to_dict()
+    assert data["infeasibility"]["duty_cycles"] == hard.duty.to_dict()["shortfalls"]
+    assert "shortfalls" not in data["duty"]
+    text = terminal.blocks_text(card.blocks(optimum), width=100, colour=False, unicode=True)
+    assert text.count("too little force") == text.split("no help")[0].count("too little force") > 0
+    page = terminal.blocks_text(report.page(optimum).blocks, width=100, colour=False, unicode=True)
+    assert page.index("What the duty cycles lack") > page.index("Why no design meets all limits")
+
+
+def test_a_number_that_is_not_finite_is_listed_with_its_reason():
+    """Past stall the opening has no bound."""
+    data = json.loads(encoded(case("hard").to_dict()))
+    assert data["duty"]["cycles"][0]["worst"]["opening"]["value"] is None
+    assert data["not_finite"]["duty.cycles[0].worst.opening.value"] == "unbounded"
+    assert data["metrics"]["duty_opening"]["why"] == "the supply does not move the load"
+
+
+def test_long_lists_of_places_are_cut_to_the_worst():
+    """Dozens of parts fatigue; the worst are listed, and one row counts the others."""
+    two = case("two")
+    (table,) = limits.places(two)
+    heads = [row.cells[0] for row in table.rows]
+    ends = [k for k, head in enumerate(heads) if head] + [len(heads)]
+    sizes = np.diff(ends)
+    assert max(sizes) == limits.MOST_PLACES + 1
+    counted = [row.cells for row in table.rows if row.cells[1].endswith(" more")]
+    assert counted
+    assert all(cells[4].startswith("from ") for cells in counted)
+    first = heads.index("fatigue by the duty cycles of a life")
+    worst = sorted(two.metrics["duty_fatigue"].by_place.values(), reverse=True)
+    shown = [row.cells[3] for row in table.rows[first : first + limits.MOST_PLACES]]
+    assert shown == [value_text(duty.DAMAGE, x) for x in worst[: limits.MOST_PLACES]]
 
 
 def test_twenty_thousand_samples_stay_a_small_figure():
@@ -333,7 +443,7 @@ def test_twenty_thousand_samples_stay_a_small_figure():
     ink = drawn(charts(long)[0])
     points = sum(len(line) for mark in ink.marks if "path" in mark for line in mark["path"])
     assert points < 40_000
-    assert len(duty.series(long)[0].values) == 20_000
+    assert len(duty.series(long)[0].values) == 20_000 + POINTS
     assert len(json.dumps(long.duty.to_dict())) < 60_000
 
 
@@ -357,7 +467,7 @@ def test_csv_on_the_command_line(tmp_path):
     source, target = tmp_path / "flight.yaml", tmp_path / "x.csv"
     source.write_text(design(cycle("flight", FLIGHT), linkage=False))
     assert run("evaluate", source, "--csv", target, "-q").code in (0, 1)
-    assert len(target.read_text().splitlines()) == 1 + 401
+    assert len(target.read_text().splitlines()) == 1 + 401 + POINTS
     target.unlink()
     result = run("evaluate", DESIGNS / "knee.yaml", "--csv", target, "-q")
     assert result.code == 2

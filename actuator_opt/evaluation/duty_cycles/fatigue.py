@@ -90,8 +90,11 @@ class CycleFatigue:
         self._load = np.array([self._loads.index(part.load) for _, part in parts], dtype=np.intp)
         self._tension = np.array([part.only_tension for _, part in parts], dtype=bool)
         self._metal = sum(not part.bolted for _, part in parts)
-        self._stress = [[rows[f"part{i}.{key}"] for i, _ in parts[: self._metal]] for key in STRESS]
-        self._life = [rows[f"part{i}.life"] for i, _ in parts[self._metal :]]
+        metal, bolts = parts[: self._metal], parts[self._metal :]
+        self._stress = np.array(
+            [[rows[f"part{i}.{key}"] for i, _ in metal] for key in STRESS], dtype=np.intp
+        )
+        self._life = np.array([rows[f"part{i}.life"] for i, _ in bolts], dtype=np.intp)
         words = (*self.cycles, "") if parts else ()
         self.keys = [(cycle, "damage", part.place) for cycle in words for _, part in parts]
         self._damage_of = RecordedFunction(_damage_of, _LOCAL, np.ones(len(_LOCAL)))
@@ -255,7 +258,7 @@ class CycleFatigue:
 
     def _each(
         self, largest: Array, smallest: Array, values: Array
-    ) -> tuple[Array, tuple[Array, Array], list[tuple[list[int], slice, Array]]]:
+    ) -> tuple[Array, tuple[Array, Array], list[tuple[Rows, slice, Array]]]:
         """Damage of every counted cycle (parts, cycles, designs), and its slopes.
 
         The slopes are by both ends of the cycle, and by the numbers of the parts: rows of the
@@ -267,7 +270,7 @@ class CycleFatigue:
         points[..., 2:] = values[self._stress].transpose(1, 2, 0)[:, None]
         identity = np.eye(len(_LOCAL))[None]
         found = self._damage_of.duals(np.empty((1, 0)), points.reshape(-1, len(_LOCAL)), identity)
-        found = found[:, 0].reshape(*points.shape[:-1], -1)
+        found = found[:, 0].reshape(*points.shape[:-1], 1 + len(_LOCAL))
         # the life of a bolt falls with the third power of the load (`endurance.bolt_cycles`)
         pulse = (largest - smallest)[bolts]
         life = values[self._life][:, None]

@@ -16,7 +16,6 @@ import numpy.typing as npt
 from ...base.dataclass import dataclass
 from ...base.numeric import Array
 from ...models import quasi_static
-from ..values import plain
 from .numbers import Numbers, SamplePlan
 from .samples import sample
 
@@ -53,7 +52,13 @@ class ForceLimit:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
-        return {name: plain(getattr(self, name)) for name in self.__dataclass_fields__}
+        return {
+            "direction": self.direction,
+            "opening": self.opening,
+            "speed": self.speed.tolist(),
+            "force": self.force.tolist(),
+            "suction": None if self.suction is None else self.suction.tolist(),
+        }
 
 
 def force_limits(

@@ -14,7 +14,6 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...base.dataclass import dataclass
 from ...base.errors import InputError
 from ...base.quantities import Sense
 from ...design.build import with_values
@@ -23,7 +22,7 @@ from ...design.model import Design
 from ...design.paths import quantity_of
 from ...metrics import METRICS
 from ..kernel import PreparedDesign, duty_numbers, duty_results
-from .study import CycleStudy, DutyStudy, study as of_models
+from .study import CycleStudy, DutyStudy, Lack, Remedy, Shortfall, study as of_models
 
 Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
@@ -53,50 +52,6 @@ class Candidate(NamedTuple):
     highest: float
 
 
-class Remedy(NamedTuple):
-    """A change of one number that is enough, SI."""
-
-    path: str
-    words: str
-    now: float
-    needed: float
-
-    def text(self, design: Design) -> str:
-        """The change in words."""
-        quantity = quantity_of(self.path, design)
-        return f"{self.words} of {quantity.text(self.needed)} instead of {quantity.text(self.now)}"
-
-
-@dataclass(frozen=True, slots=True)
-class Shortfall:
-    """A check that a duty cycle misses, with the reason and cures."""
-
-    metric: str
-    cycle: str
-    reason: str
-    """Sentence that names the sample, the time and the shortfall."""
-    remedies: tuple[Remedy, ...]
-    tried: tuple[str, ...]
-    """Words of all numbers that were tried."""
-
-    def sentence(self, design: Design) -> str:
-        """The shortfall and its cures."""
-        if not self.remedies:
-            return f"{self.reason}; no change of {_listed(self.tried, 'or')} alone is enough"
-        texts = [remedy.text(design) for remedy in self.remedies]
-        return f"{self.reason}; {_listed(texts, 'or')} is enough for the duty cycles"
-
-
-def _listed(words: Sequence[str], last: str) -> str:
-    """Words joined by commas, the last two by a word.
-
-    >>> _listed(["a", "b", "c"], "or"), _listed(["a"], "or")
-    ('a, b or c', 'a')
-    """
-    head = ", ".join(words[:-1])
-    return f"{head} {last} {words[-1]}" if head else words[-1]
-
-
 def shortfalls(
     subject: PreparedDesign,
     duty: DutyStudy,
@@ -119,12 +74,16 @@ def shortfalls(
     for metric, cycle in model.present:
         if metric not in missed or model.present[metric, cycle][0] >= -MISSED:
             continue
+        sample = time = None
         if metric == "duty_fatigue":
-            reason = _fatigue(duty, model)
+            lack = _fatigue(duty, model)
+            reason = f"{LIFE}: {lack.words}"
             candidates = list(_life_candidates(subject.design))
         else:
             study, stated = studies[cycle], cycles[cycle]
-            reason = _REASONS[metric](study, subject, limits[metric][1])
+            lack = _LACKS[metric](study, subject, limits[metric][1])
+            sample, time = lack.sample, float(study.record.time[lack.sample])
+            reason = f"{cycle}: at {time:.4g} s (sample {sample}) {lack.words}"
             candidates = list(_candidates(metric, stated, subject.design))
         candidates = [c for c in candidates if subject.numbers.get(c.path)]
         found = [model.cure((metric, cycle), candidate) for candidate in candidates]
@@ -133,18 +92,23 @@ def shortfalls(
             key=lambda remedy: abs(np.log(remedy.needed / remedy.now)),
         )
         tried = tuple(dict.fromkeys(c.words.removeprefix("a ") for c in candidates))
-        yield Shortfall(metric, cycle, reason, tuple(remedies[:MOST]), tried)
+        yield Shortfall(
+            metric, cycle, lack.what, sample, time, reason, tuple(remedies[:MOST]), tried
+        )
 
 
 # ---- shortfalls ----
 
 
-def _at(study: CycleStudy, index: int) -> str:
-    """Cycle, time and sample."""
-    return f"{study.name}: at {study.record.time[index]:.4g} s (sample {index})"
+class _Lack(NamedTuple):
+    """A shortage of a cycle: its kind, the sample at which it is largest, and a sentence."""
+
+    what: Lack
+    sample: int
+    words: str
 
 
-def _force_or_flow(study: CycleStudy, subject: PreparedDesign, limit: float) -> str:
+def _force_or_flow(study: CycleStudy, subject: PreparedDesign, limit: float) -> _Lack:
     """Missing force or flow where the supply does not move the load with the permitted opening."""
     index = int(np.argmax(study.traces["share"]))
     at = {name: float(trace[index]) for name, trace in study.traces.items()}
@@ -153,9 +117,7 @@ def _force_or_flow(study: CycleStudy, subject: PreparedDesign, limit: float) -> 
     if subject.design.valve is not None:
         varied = {"valve.rated_flow": np.array([UNLIMITED * float(v["valve.rated_flow"])])}
         models, numbers = duty_numbers(subject, subject.values(varied))
-        larger = next(
-            x for x in of_models(models, numbers[:, 0], ()).cycles if x.name == study.name
-        )
+        larger = next(x for x in of_models(models, numbers[:, 0]).cycles if x.name == study.name)
         sizeless = float(larger.traces["needed"][index])
     available = limit * at["supply"]
     pressure, flow = METRICS["duty_supply_needed"], METRICS["duty_flow_peak"]
@@ -165,21 +127,22 @@ def _force_or_flow(study: CycleStudy, subject: PreparedDesign, limit: float) -> 
         parts = ""
         if sizeless < at["needed"]:
             parts = f", of which {pressure.text(at['needed'] - sizeless)} for the flow"
-        return (
-            f"{_at(study, index)} too little force: the supply gives "
-            f"{force((at['needed'] - available) * area)} less than the load needs "
-            f"({pressure.text(at['needed'])}{parts})"
+        words = (
+            f"too little force: the supply gives {force((at['needed'] - available) * area)} less "
+            f"than the load needs ({pressure.text(at['needed'])}{parts})"
         )
+        return _Lack("force", index, words)
     share = float(v["duty.opening_limit"])
     passed = abs(at["flow"] - at["leakage"])
     possible = passed * np.sqrt((available - sizeless) / (at["needed"] - sizeless))
-    return (
-        f"{_at(study, index)} too little flow: at {100 * share:.3g} % opening the valve passes "
-        f"{flow.text(possible)} of {flow.text(passed)} that the motion needs"
+    words = (
+        f"too little flow: at {100 * share:.3g} % opening the valve passes {flow.text(possible)} "
+        f"of {flow.text(passed)} that the motion needs"
     )
+    return _Lack("flow", index, words)
 
 
-def _cavitation(study: CycleStudy, subject: PreparedDesign, limit: float) -> str:
+def _cavitation(study: CycleStudy, subject: PreparedDesign, limit: float) -> _Lack:
     """Where the pressure of a chamber falls below the limit."""
     lows = {name: int(np.argmin(study.traces[f"pressure_{name}"])) for name in "ab"}
     chamber = min(lows, key=lambda name: study.traces[f"pressure_{name}"][lows[name]])
@@ -187,13 +150,14 @@ def _cavitation(study: CycleStudy, subject: PreparedDesign, limit: float) -> str
     low = float(study.traces[f"pressure_{chamber}"][index])
     pull = float(study.traces["force"][index]) * np.sign(float(study.traces["speed"][index]))
     cause = ", because the load pulls the piston" if pull < 0 else ""
-    return (
-        f"{_at(study, index)} cavitation in chamber {chamber.upper()}: its pressure "
-        f"falls to {METRICS['duty_pressure_min'].text(low)}{cause}"
+    words = (
+        f"cavitation in chamber {chamber.upper()}: its pressure falls to "
+        f"{METRICS['duty_pressure_min'].text(low)}{cause}"
     )
+    return _Lack("pressure", index, words)
 
 
-def _travel(study: CycleStudy, subject: PreparedDesign, limit: float) -> str:
+def _travel(study: CycleStudy, subject: PreparedDesign, limit: float) -> _Lack:
     """Where the piston would pass its stop."""
     position = study.traces["position"]
     stroke = subject.design.cylinder.stroke
@@ -204,24 +168,26 @@ def _travel(study: CycleStudy, subject: PreparedDesign, limit: float) -> str:
         ("extended", high, beyond) if beyond > before else ("retracted", low, before)
     )
     where = f"beyond the {stop} stop" if limit == 0 else f"too near the {stop} stop"
-    return f"{_at(study, index)} too little travel: the piston would be {text(over)} {where}"
+    words = f"too little travel: the piston would be {text(over)} {where}"
+    return _Lack("travel", index, words)
 
 
-_REASONS = {
+_LACKS = {
     "duty_supply_share": _force_or_flow,
     "duty_suction_ratio": _cavitation,
     "duty_stroke_margin": _travel,
 }
 
 
-def _fatigue(duty: DutyStudy, model: _Model) -> str:
+def _fatigue(duty: DutyStudy, model: _Model) -> _Lack:
     """The part with the largest damage, and the cycle that causes most of it."""
     part = max(model.damage, key=lambda place: model.damage[place])
     shares = {study.name: study.damage.get(part, 0.0) for study in duty.cycles}
     most = max(shares, key=lambda name: shares[name])
     share = "" if len(shares) == 1 else f", {shares[most] / model.damage[part]:.0%} of it by {most}"
     damage = f"{model.damage[part]:.3g}{share}"
-    return f"{LIFE}: too little fatigue strength: {part} reaches a damage of {damage}"
+    words = f"too little fatigue strength: {part} reaches a damage of {damage}"
+    return _Lack("fatigue strength", -1, words)
 
 
 # ---- cures ----
@@ -318,7 +284,10 @@ class _Model:
             if factor != 1 and (needed := self._nearest(target, path, now, factor)) is not None
         ]
         needed = min(found, key=lambda value: abs(np.log(value / now)), default=None)
-        return None if needed is None else Remedy(path, words, now, needed)
+        if needed is None:
+            return None
+        quantity = quantity_of(path, self._subject.design)
+        return Remedy(path, words, now, needed, quantity.text(now), quantity.text(needed))
 
     def _nearest(
         self, target: tuple[str, str], path: str, now: float, factor: float

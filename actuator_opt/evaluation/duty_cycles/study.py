@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, NamedTuple
+from collections.abc import Mapping, Sequence
+from dataclasses import field, replace
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from ...base.dataclass import dataclass
 from ...design.cycle_record import CycleRecord
-from ..values import plain
+from ...models import wear
 from .force_speed import ForceLimit, force_limits
 from .numbers import CYCLE
 from .results import CycleModels, Place
@@ -44,6 +45,14 @@ class WorstSample(NamedTuple):
     value: float
 
 
+class ShortStrokes(NamedTuple):
+    """Strokes of a cycle too short to carry oil across a seal's contact."""
+
+    strokes: int
+    shorter_than: float
+    """Length below which a stroke is short [m]."""
+
+
 @dataclass(frozen=True)
 class CycleStudy:
     """A cycle of a design: its record, and results at all samples, SI.
@@ -72,6 +81,10 @@ class CycleStudy:
     """Limits in the plane of force and speed, at the least supply pressure of the cycle."""
     linked: bool = False
     """Whether the linkage gives position and lever arm."""
+    reversals: int = 0
+    """Changes of direction of the piston, the smallest ones included."""
+    short_strokes: Mapping[str, ShortStrokes] = field(default_factory=dict)
+    """Strokes by seal that are shorter than `wear.SHORT_STROKE` contact widths."""
 
     @property
     def efficiency(self) -> float | None:
@@ -92,27 +105,155 @@ class CycleStudy:
 
     def to_dict(self) -> dict[str, Any]:
         """JSON data: sums, worst samples with the state there, and limits; without traces."""
-        data: dict[str, Any] = plain(
-            {
-                "name": self.name,
-                "duration": float(self.time[-1] - self.time[0]),
-                "samples": len(self.time),
-                "reversals": self.record.reversals,
-                "energies": self.energies,
-                "efficiency": self.efficiency,
-                "flow_mean": self.flow_mean,
-                "way": self.way,
-                "worst": {
-                    key: worst._asdict() | {"state": self.state(worst.sample)}
-                    for key, worst in self.worst.items()
-                },
-                "force_limits": [limit.to_dict() for limit in self.limits],
-                "damage": self.damage,
-                "severity": self.severity,
-                "warnings": [*self.record.notes, *self.record.warnings],
-            }
-        )
-        return data
+        return {
+            "name": self.name,
+            "duration": float(self.time[-1] - self.time[0]),
+            "samples": len(self.time),
+            "reversals": self.reversals,
+            "short_strokes": {seal: x._asdict() for seal, x in self.short_strokes.items()},
+            "energies": dict(self.energies),
+            "efficiency": self.efficiency,
+            "flow_mean": self.flow_mean,
+            "way": self.way,
+            "worst": {
+                key: worst._asdict() | {"state": self.state(worst.sample)}
+                for key, worst in self.worst.items()
+            },
+            "force_limits": [limit.to_dict() for limit in self.limits],
+            "damage": dict(self.damage),
+            "severity": dict(self.severity),
+            "warnings": [*self.record.notes, *self.record.warnings],
+        }
+
+
+Lack: TypeAlias = Literal["force", "flow", "pressure", "travel", "fatigue strength"]
+"""Kinds of shortage of a duty cycle; without pressure the oil cavitates."""
+
+
+class Remedy(NamedTuple):
+    """A change of one number that is enough for the duty cycles, SI and as text."""
+
+    path: str
+    words: str
+    now: float
+    needed: float
+    now_text: str
+    needed_text: str
+
+    @property
+    def text(self) -> str:
+        """The change in words."""
+        return f"{self.words} of {self.needed_text} instead of {self.now_text}"
+
+
+@dataclass(frozen=True, slots=True)
+class Shortfall:
+    """A check that a duty cycle misses: what is lacking where, and single changes that cure it."""
+
+    metric: str
+    cycle: str
+    lacks: Lack
+    sample: int | None
+    """The sample at which it lacks most; None for the life."""
+    time: float | None
+    """Time of this sample in the file [s]."""
+    reason: str
+    """Sentence that names the sample, the time and the shortfall."""
+    remedies: tuple[Remedy, ...]
+    tried: tuple[str, ...]
+    """Words of all numbers that were tried."""
+
+    @property
+    def cures(self) -> str:
+        """The changes in words, or which numbers do not help."""
+        if not self.remedies:
+            return f"no change of {_listed(self.tried)} alone is enough"
+        return _listed([remedy.text for remedy in self.remedies])
+
+    @property
+    def sentence(self) -> str:
+        """The shortfall and its cures."""
+        enough = " is enough for the duty cycles" if self.remedies else ""
+        return f"{self.reason}; {self.cures}{enough}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON data."""
+        keys = ("metric", "cycle", "lacks", "sample", "time", "sentence")
+        return {key: getattr(self, key) for key in keys} | {
+            "remedies": [
+                {"path": remedy.path, "now": remedy.now, "needed": remedy.needed}
+                for remedy in self.remedies
+            ],
+            "tried": list(self.tried),
+        }
+
+
+def _listed(words: Sequence[str]) -> str:
+    """Alternatives joined by commas and "or".
+
+    >>> _listed(["a", "b", "c"]), _listed(["a"])
+    ('a, b or c', 'a')
+    """
+    head = ", ".join(words[:-1])
+    return f"{head} or {words[-1]}" if head else words[-1]
+
+
+@dataclass(frozen=True, slots=True)
+class WarmingPlace:
+    """Temperature of a place over time [K], and the limit of its material."""
+
+    name: str
+    temperature: Trace
+    steady: float
+    limit: float | None
+    """Highest temperature of the material; None if the library states none."""
+    material: str
+    """Material with this limit."""
+    crossed: float | None
+    """Time from which on the limit is exceeded [s]; None if it never is."""
+    after_mission: float | None
+    """Temperature at the end of the mission; None if no time of a mission is stated."""
+
+
+@dataclass(frozen=True, slots=True)
+class Warming:
+    """Temperatures from cold while a cycle, or the mean of all cycles, repeats without end, SI."""
+
+    name: str
+    """The cycle, or `thermal.MEAN`."""
+    start: float
+    """Temperature of all parts at the beginning: that of the air."""
+    time_constant: float
+    """Slowest time constant."""
+    mission: float | None
+    """Time of a mission."""
+    ripple: float
+    """Bound of the deviation from these temperatures within a period."""
+    time: Trace
+    places: tuple[WarmingPlace, ...]
+
+    @property
+    def reserve(self) -> float:
+        """Least distance of a steady temperature from its limit; infinite without limits."""
+        known = (place.limit - place.steady for place in self.places if place.limit is not None)
+        return min(known, default=float("inf"))
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON data."""
+        keys = ("steady", "limit", "material", "crossed", "after_mission")
+        return {
+            "cycle": self.name,
+            "start": self.start,
+            "time_constant": self.time_constant,
+            "mission": self.mission,
+            "ripple": self.ripple,
+            "time": self.time.tolist(),
+            "places": {
+                place.name: {"temperature": place.temperature.tolist()}
+                | {key: getattr(place, key) for key in keys}
+                for place in self.places
+            },
+        }
 
 
 class LinkageSize(NamedTuple):
@@ -145,6 +286,10 @@ class DutyStudy:
     """Largest opening of the valve that a cycle may need; None without a valve."""
     linkage: LinkageSize | None = None
     """Lengths of the linkage; None if no cycle moves it."""
+    warming: tuple[Warming, ...] = ()
+    """Temperatures over time, under every cycle or the mean of all; empty if they are not known."""
+    shortfalls: tuple[Shortfall, ...] = ()
+    """Checks that the cycles miss, with reasons and cures."""
 
     def to_dict(self) -> dict[str, Any]:
         """JSON data."""
@@ -153,6 +298,8 @@ class DutyStudy:
             "opening_limit": self.opening_limit,
             "linkage": None if self.linkage is None else self.linkage._asdict(),
             "not_assessed_for_fatigue": dict(self.unknown),
+            "warming": [warming.to_dict() for warming in self.warming],
+            "shortfalls": [shortfall.to_dict() for shortfall in self.shortfalls],
             "notes": list(self.notes),
         }
 
@@ -182,9 +329,9 @@ _WORST: Mapping[str, tuple[str, float]] = {
 
 
 def study(
-    models: CycleModels, numbers: npt.NDArray[np.float64], notes: tuple[str, ...]
+    models: CycleModels, numbers: npt.NDArray[np.float64], widths: Mapping[str, float] | None = None
 ) -> DutyStudy:
-    """The duty cycles of one design at its numbers (numbers,)."""
+    """The duty cycles of one design at its numbers (numbers,); `widths` are the seals' contacts."""
     results = dict(zip(models.places, models(numbers[:, None])[:, 0].tolist(), strict=True))
     named = dict(zip(models.names, numbers.tolist(), strict=True))
     cycles = []
@@ -196,21 +343,37 @@ def study(
         u["level"] = float(track.real("supply").min())
         limits = force_limits(models.plan, u, track.real("speed")[:, 0])
         repeats = named.get(f"{name}|repeats")
-        cycles.append(
-            _cycle(name, record, time, track, results, limits, repeats, name in models.plan.linked)
+        cycle = _cycle(
+            name, record, time, track, results, limits, repeats, name in models.plan.linked
         )
+        cycles.append(_with_strokes(cycle, widths or {}))
     linkage = None
     if models.plan.linked:
         linkage = LinkageSize(**{key: named[key] for key in LinkageSize._fields})
     return DutyStudy(
         cycles=tuple(cycles),
         unknown=dict(models.plan.unknown),
-        notes=(*NOTES, *notes),
+        notes=NOTES,
         return_pressure=named["drain"],
         stroke=named["stroke"],
         opening_limit=named["opening_limit"] if models.plan.valve else None,
         linkage=linkage,
     )
+
+
+def _with_strokes(cycle: CycleStudy, widths: Mapping[str, float]) -> CycleStudy:
+    """The cycle with its reversals, and the strokes that starve a seal of oil."""
+    position = cycle.traces["position"]
+    if not np.isfinite(position).all():
+        return cycle
+    short = {}
+    reversals = 0
+    for seal, width in {"": 0.0, **widths}.items():
+        found = wear.strokes(position=position, contact_width=width, closed=cycle.record.closed)
+        reversals = found.reversals
+        if seal:
+            short[seal] = ShortStrokes(found.short, wear.SHORT_STROKE * width)
+    return replace(cycle, reversals=reversals, short_strokes=short)
 
 
 def _cycle(

@@ -6,11 +6,11 @@ a cycle. Cap and head are left out, and so is conduction along the wall: both ar
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from math import pi
 from typing import NamedTuple
 
-from ...base.numeric import Array, minimum
+from ...base.numeric import Array, minimum, real, where
 from ...design.model import Design
 from ...models import heat_transfer, thermal_network
 from ...models.thermal_network import (
@@ -18,6 +18,7 @@ from ...models.thermal_network import (
     SteadyTemperatures,
     Surroundings,
     ThermalLayer,
+    ThermalNetwork,
     ThermalPart,
 )
 from ..geometry import Geometry
@@ -50,48 +51,103 @@ class _Heats(NamedTuple):
     """Pressure drop of the oil on its way in, weighted with the flow [Pa]."""
 
 
+class ThermalState(NamedTuple):
+    """Network of the actuator under a cycle, or the mean of all, and its steady state."""
+
+    network: ThermalNetwork
+    steady: SteadyTemperatures
+    oil: Mapping[str, Array]
+    """Density and specific heat of the oil, SI."""
+    supplied: Array
+    """Temperature of the oil from the supply [K]."""
+
+
+class ThermalPlace(NamedTuple):
+    """A place whose temperature is known, and the materials that it must not damage."""
+
+    name: str
+    materials: tuple[str, ...]
+
+
+def thermal_places(design: Design) -> list[ThermalPlace]:
+    """Inside of every layer, oil, and the seals of piston and rod."""
+    layers = enumerate(design.barrel.layup, 1)
+    places = [ThermalPlace(f"layer {k} ({ply.material})", (ply.material,)) for k, ply in layers]
+    places.append(ThermalPlace("oil", (design.fluid.material,)))
+    for block in ("piston", "rod"):
+        elements = getattr(design.seals, block).elements().values()
+        compounds = dict.fromkeys(element.compound for element in elements)
+        places.append(ThermalPlace(f"{block} seal", tuple(compounds)))
+    return places
+
+
+def temperatures_of(network: ThermalNetwork, nodes: Sequence[Array]) -> list[Array]:
+    """Temperatures of the `thermal_places` from those of the nodes [K].
+
+    A piston seal is as warm as the innermost layer, a rod seal as the rod.
+    """
+    count = len(network.layers)
+    oil, layers, rod = nodes[0], nodes[1 : count + 1], nodes[count + 1]
+    faces = thermal_network.inner_faces(network=network, oil=oil, layers=layers)
+    return [*faces, oil, layers[0], rod]
+
+
 def compute(
     v: Values,
     design: Design,
     stock: MaterialValues,
     g: Geometry,
     results: Mapping[Place, Array],
-    supplied: Array | None,
+    tank: Array | None,
     out: MetricArrays,
 ) -> None:
-    """Compute steady temperatures; `supplied` is that of the tank, None: as stated."""
+    """Compute steady temperatures; `tank` is that of the oil in the tank, None: as stated."""
     missing = _missing(design, stock)
     if missing:
         for name in METRICS:
             out.skip(name, f"not known: {', '.join(missing)}")
         return
-    assert design.duty is not None
-    if supplied is None:
-        supplied = v.get("duty.oil_supply", None)
-        supplied = v["fluid.temperature"] if supplied is None else supplied
     oil: dict[str, Array] = {}
     wall: dict[str, Array] = {}
     seal: dict[str, Array] = {}
     spare: dict[str, Array] = {}
-    for name, heats in _each(v, design, results):
-        state = _steady(v, design, stock, g, heats, supplied)
-        oil[name] = state.oil
-        seal[f"{name}, piston seal"] = state.layers[0]
-        seal[f"{name}, rod seal"] = state.parts[0]
-        for k, (ply, face) in enumerate(zip(design.barrel.layup, state.faces, strict=True)):
-            place = f"{name}, layer {k + 1} ({ply.material})"
-            wall[place] = face
-            spare |= _spare(stock, ply.material, place, face)
-        spare |= _spare(stock, design.fluid.material, f"{name}, oil", state.oil)
-        for block, place in (("piston", state.layers[0]), ("rod", state.parts[0])):
-            for element in getattr(design.seals, block).elements().values():
-                label = f"{name}, {block} seal ({element.compound})"
-                spare |= _spare(stock, element.compound, label, place)
+    for name, state in states(v, design, stock, g, results, tank):
+        temperatures = temperatures_of(state.network, state.steady.nodes)
+        for place, temperature in zip(thermal_places(design), temperatures, strict=True):
+            label = f"{name}, {place.name}"
+            if place.name == "oil":
+                oil[name] = temperature
+            elif place.name.endswith(" seal"):
+                seal[label] = temperature
+            else:
+                wall[label] = temperature
+            for material in place.materials:
+                words = f"{label} ({material})" if place.name.endswith(" seal") else label
+                spare |= _spare(stock, material, words, temperature)
     for metric, values in zip(METRICS, (oil, wall, seal, spare), strict=True):
         if values:
             out.put(metric, values)
         else:
             out.skip(metric, "no material states a highest temperature")
+
+
+def states(
+    v: Values,
+    design: Design,
+    stock: MaterialValues,
+    g: Geometry,
+    results: Mapping[Place, Array],
+    tank: Array | None,
+) -> Iterator[tuple[str, ThermalState]]:
+    """Yield the steady state of every cycle, or of their mean; none if properties are missing."""
+    if _missing(design, stock):
+        return
+    supplied = tank
+    if supplied is None:
+        supplied = v.get("duty.oil_supply", None)
+        supplied = v["fluid.temperature"] if supplied is None else supplied
+    for name, heats in _each(v, design, results):
+        yield name, _steady(v, design, stock, g, heats, supplied)
 
 
 def _spare(
@@ -160,13 +216,15 @@ _MEANS = ("position_mean", "exchange_a", "exchange_b")
 
 def _heats(total: Mapping[str, Array], mean: Mapping[str, Array]) -> _Heats:
     time = mean["duration"]
+    fills = real(total["inlet_volume"]) > 0  # at rest no oil flows in
+    volume = where(fills, total["inlet_volume"], 1.0)
     return _Heats(
         piston=total["piston"] / time,
         rod=total["rod"] / time,
         speed=total["way"] / time,
         position=mean["position_mean"],
         exchange=mean["exchange_a"] + mean["exchange_b"],
-        inlet_drop=total["inlet_heat"] / total["inlet_volume"],
+        inlet_drop=where(fills, total["inlet_heat"], 0.0) / volume,
     )
 
 
@@ -177,8 +235,8 @@ def _steady(
     g: Geometry,
     heats: _Heats,
     supplied: Array,
-) -> SteadyTemperatures:
-    """Steady temperatures under the mean heat of a cycle."""
+) -> ThermalState:
+    """Steady state under the mean heat of a cycle."""
     name = design.fluid.material
     oil = {
         "density": stock.get(name, "density"),
@@ -214,21 +272,23 @@ def _steady(
                 heat=friction.layer + friction.head if k == 0 else 0.0,
             )
         )
-    return thermal_network.steady_temperatures(
-        network=thermal_network.thermal_network(
-            bore=g.bore,
-            length=g.wall_length,
-            wetted_length=minimum(g.stroke, g.wall_length),
-            oil=node,
-            layers=layers,
-            parts=[_rod(design, stock, g, heats, film, friction.rod)],
-        ),
+    network = thermal_network.thermal_network(
+        bore=g.bore,
+        length=g.wall_length,
+        wetted_length=minimum(g.stroke, g.wall_length),
+        oil=node,
+        layers=layers,
+        parts=[_rod(design, stock, g, heats, film, friction.rod)],
+    )
+    steady = thermal_network.steady_temperatures(
+        network=network,
         surroundings=Surroundings(
             temperature=v["duty.ambient"],
             air_speed=v["duty.air_speed"],
             emissivity=v["duty.emissivity"],
         ),
     )
+    return ThermalState(network, steady, oil, supplied)
 
 
 def _rod(

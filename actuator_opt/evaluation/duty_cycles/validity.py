@@ -1,4 +1,4 @@
-"""Whether duty cycles are slow enough for the quasi-static model."""
+"""Doubts about duty cycles: too fast for the quasi-static model, or too short for a seal."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from ...base.quantities import INPUTS
 from ...design.cycle_record import spline
+from ...models import wear
 from .study import CycleStudy, DutyStudy
 
 POWER = 0.99
@@ -60,6 +61,22 @@ def warnings(
                 f"{cycle.name} is too fast to count as quasi-static: {100 * POWER:g} % of the "
                 f"power of its speed lies below {text(content, 3)}, which exceeds a third of the "
                 f"{lowest} ({text(known[lowest], 3)}): {remedy}",
+            )
+
+
+def short_strokes(study: DutyStudy) -> Iterator[tuple[str, str]]:
+    """Yield (metric, sentence) for every seal that short strokes starve of oil."""
+    length = INPUTS["length"]
+    for cycle in study.cycles:
+        for seal, short in cycle.short_strokes.items():
+            if not short.strokes:
+                continue
+            yield (
+                "duty_wear",
+                f"{cycle.name}: {short.strokes} of {cycle.reversals} strokes are shorter than "
+                f"{wear.SHORT_STROKE:g} contact widths of the {seal} "
+                f"({length.text(short.shorter_than, 3)}): they carry no fresh oil into the "
+                "contact, and the wear law does not show this; if they are noise, smooth the file",
             )
 
 
