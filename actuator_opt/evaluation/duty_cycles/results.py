@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...base.numeric import STEP, Array
+from ...base.numeric import STEP, Array, sorted_unique
 from ...base.quantities import Sense
 from ...design.cycle_record import CycleRecord
 from ...models import heat_transfer, supply_sizing
@@ -358,13 +358,16 @@ class _Cycle:
     def _exchange(self, values: Array, seeds: Array, near: NearSamples) -> Array:
         """Flow of fresh oil into each chamber: of every stroke, what the line does not hold back.
 
-        All designs turn at the same samples: a lever arm does not change its sign.
+        All designs turn at the same samples: a lever arm does not change its sign. The last stroke
+        of a closed cycle may go on in its first.
         """
         u = dict(zip(self.model.names, stepped(values, seeds), strict=True))
         turns = np.broadcast_to(self._turns[:, None], (len(self._turns), values.shape[1]))
         x = near.at(self.model.outputs.index("position"), turns)
         position = (complexed(x) if seeds.shape[2] else x[..., 0]).reshape(len(turns), -1)
         strokes = position[1:] - position[:-1]
+        if self.record.closed and strokes[0, 0].real * strokes[-1, 0].real > 0:
+            strokes = np.concatenate([strokes[:1] + strokes[-1:], strokes[1:-1]])
         duration = (self.record.time[-1] - self.record.time[0]) * u["time_scale"]
         filling = np.stack([strokes, -strokes])
         fresh = heat_transfer.exchanged_volume(
@@ -453,41 +456,38 @@ class SupplyWeights:
     """
 
     def __init__(self, time: Array, phases: Sequence[float]) -> None:
-        self._time, count = time, len(time)
-        period = time[-1] - time[0]
-        self._others = []
-        for phase in phases:
-            moved = (time - time[0] - phase * period) % period + time[0]
-            left = np.clip(np.searchsorted(time, moved, side="right") - 1, 0, count - 2)
-            share = ((moved - time[left]) / (time[left + 1] - time[left]))[:, None]
-            self._others.append((left, share))
-
-    def total(self, flow: Array) -> Array:
-        """Flow of all actuators (samples, designs) from that of one."""
-        total = flow
-        for left, share in self._others:
-            total = total + (1 - share) * flow[left] + share * flow[left + 1]
-        return total
+        period, count = time[-1] - time[0], len(time)
+        delays = [phase * period for phase in (0.0, *phases)]
+        own = time - time[0]
+        corners = [own, *((own + delay) % period for delay in delays[1:])]
+        self._count = count
+        self._time = sorted_unique(np.concatenate(corners)) if phases else own
+        self._actuators: list[tuple[npt.NDArray[np.intp], Array]] = []
+        for delay in delays:
+            moved = (self._time - delay) % period if delay else self._time
+            left = np.clip(np.searchsorted(own, moved, side="right") - 1, 0, count - 2)
+            share = ((moved - own[left]) / (own[left + 1] - own[left]))[:, None]
+            self._actuators.append((left, share))
 
     def weights(self, flow: Array) -> _Weights:
         """Weights at the flow of one actuator (samples, designs)."""
-        total, steps = self.total(flow), np.diff(self._time)[:, None]
+        parts = ((1 - x) * flow[left] + x * flow[left + 1] for left, x in self._actuators)
+        total, steps = sum(parts), np.diff(self._time)[:, None]
         ripple = supply_sizing.ripple_volume(time=self._time[:, None], flow=total)
         rows = np.arange(len(steps))[:, None]
         between = 0.5 * ((rows < ripple.largest).astype(float) - (rows < ripple.smallest))
         taken, mean = _by_sample(between * steps), _by_sample(0.5 * steps)
         taken -= mean * (taken.sum(axis=0) / mean.sum())
-        peak = np.zeros_like(flow)
+        peak = np.zeros_like(total)
         np.put_along_axis(peak, np.argmax(total, axis=0)[None], 1.0, axis=0)
         return _Weights(self._of_one(taken), self._of_one(peak))
 
     def _of_one(self, weights: Array) -> Array:
         """Weights of the flow of one actuator from those of the total flow."""
-        own = weights
-        for left, share in self._others:
-            own = own.copy()
-            for at, part in ((left, 1 - share), (left + 1, share)):
-                np.add.at(own, at, part * weights)
+        own = np.zeros((self._count, weights.shape[1]))
+        for left, share in self._actuators:
+            np.add.at(own, left, (1 - share) * weights)
+            np.add.at(own, left + 1, share * weights)
         return own
 
 
