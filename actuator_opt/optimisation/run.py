@@ -23,7 +23,7 @@ from .choices import (
     search_choices,
 )
 from .infeasibility import explained
-from .prices import Sensitivity, sensitivities
+from .price_table import Sensitivity, sensitivities
 from .result import Certificate, Choices, Infeasibility, Kkt, Optimisation, Rounding, VariableResult
 from .rounding import Wanted, design_at, rounded, sizes_of
 from .solution import Outcome, Solution
