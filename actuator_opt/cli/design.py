@@ -300,7 +300,7 @@ def _start_text(
 ) -> str:
     """Text of a start file named by `title`: a design, or a scenario that `out` will contain."""
     from ..design import read_design
-    from ..design.cycle_reader import moved
+    from ..design.data_file import moved
     from ..design.kinds import ValueFault
     from ..design.scenario.reader import scenario_text
     from ..design.writer import init_text

@@ -19,7 +19,7 @@ from ..base.quantities import Quantity, Sense
 from ..base.tables import Displayed
 from ..design import Design
 from ..design.build import to_tree
-from ..design.flow_curve import FlowTable
+from ..design.data_file import DataFile
 from ..design.kinds import Fraction
 from ..design.paths import NAMED_LISTS, quantity_of
 from ..design.structure import child_at
@@ -354,8 +354,8 @@ def _value(node: Any) -> Value:
     """Return a plain value unchanged, and the word "given" for a block."""
     if node is _MISSING or node == {} or node == []:
         return None
-    if isinstance(node, FlowTable):
-        return str(node)
+    if isinstance(node, DataFile):
+        return node.label
     if isinstance(node, dict):
         stated = node.get("material")
         return stated if isinstance(stated, str) else "given"
