@@ -38,7 +38,7 @@ from .options import (
 
 if TYPE_CHECKING:
     from ..api import Restored
-    from ..api.starting import Duty, Start
+    from ..api.starting import Start, StartAnswers
     from ..api.starting_cycle import CycleStart
 
 
@@ -65,7 +65,7 @@ NewName = Annotated[
     typer.Argument(
         metavar="NAME",
         help="Name of the actuator or scenario; NAME.yaml is written. "
-        "Without a name the text is printed; without a duty it is a template of all keys.",
+        "Without a name the text is printed; without forces it is a template of all keys.",
     ),
 ]
 Source = Annotated[str | None, typer.Option("--from", metavar="DESIGN", help="Copy this design.")]
@@ -124,7 +124,7 @@ CycleOf = Annotated[
     typer.Option(
         "--cycle",
         metavar="FILE.csv",
-        help="Duty cycle that gives forces, speed and stroke: time with position and force, or "
+        help="StartAnswers cycle that gives forces, speed and stroke: time with position and force, or "
         "with joint_angle and joint_torque (add --lever-arm).",
     ),
 ]
@@ -176,11 +176,11 @@ def init(
     faults, remarks = list[Diagnostic](), list[str]()
     if answers or cycle or yes or (out is not None and not copied):
         found = _cycle(cycle, answers, out)
-        duty = _duty(answers, ask=not as_json, defaults=yes)
-        start = _solved(job, duty, found, title)
+        complete = _complete(answers, ask=not as_json, defaults=yes)
+        start = _solved(job, complete, found, title)
         text, verdict = start.text, {"met": start.met}
         if start.met:
-            remarks = [f"{duty.words}, solved: {start.solved}; edit it, or optimise it"]
+            remarks = [f"{complete.words}, solved: {start.solved}; edit it, or optimise it"]
         else:
             faults = [Diagnostic("nothing fits yet", start.sentence, str(out or ""))]
             verdict["remedy"] = start.sentence
@@ -197,7 +197,7 @@ def init(
 
 
 def _only_one(sources: Mapping[str, object]) -> None:
-    """Refuse two sources of the file; a design, a scenario and a duty exclude each other."""
+    """Refuse two sources of the file; a design, a scenario and answers exclude each other."""
     stated = [option for option, value in sources.items() if value is not None]
     copies = [option for option in stated if option in ("--scenario", "--from")]
     if copies and len(stated) > 1:
@@ -219,11 +219,13 @@ def _target(name: str | None, out: Path | None) -> tuple[dict[str, str], Path | 
     return title, out
 
 
-def _solved(job: Job, duty: Duty, cycle: CycleStart | None, title: dict[str, str]) -> Start:
+def _solved(
+    job: Job, answers: StartAnswers, cycle: CycleStart | None, title: dict[str, str]
+) -> Start:
     """The solved start design named by `title`, with its cycle."""
     from ..api.starting import solved_start
 
-    start: Start = job.run(solved_start, duty, **title)
+    start: Start = job.run(solved_start, answers, **title)
     return start if cycle is None else cycle.added_to(start)
 
 
@@ -231,11 +233,11 @@ def _cycle(file: str | None, answers: dict[str, str], out: Path | None) -> Cycle
     """The cycle in a file, if one is named; its forces, speed and stroke become answers."""
     if file is None:
         return None
-    from ..api.starting import duty_answers
+    from ..api.starting import start_answers
     from ..api.starting_cycle import cycle_start
 
     stated = {"lever_arm": answers["lever_arm"]} if "lever_arm" in answers else {}
-    arm = duty_answers(stated, "--").get("lever_arm")
+    arm = start_answers(stated, "--").get("lever_arm")
     assert not isinstance(arm, str)
     found = cycle_start(file, lever_arm=arm, folder=Path() if out is None else out.parent)
     answers.update(found.answers | answers)
@@ -252,8 +254,8 @@ _QUESTIONS = (
 """Questions of `init`, each with the keys that it answers."""
 
 
-def _duty(answers: dict[str, str], *, ask: bool, defaults: bool) -> Duty:
-    """The duty from stated answers, from questions on a terminal, or from defaults.
+def _complete(answers: dict[str, str], *, ask: bool, defaults: bool) -> StartAnswers:
+    """All answers: as stated, from questions on a terminal, or from defaults.
 
     Raises
     ------
@@ -261,15 +263,15 @@ def _duty(answers: dict[str, str], *, ask: bool, defaults: bool) -> Duty:
     """
     from ..api import starting
 
-    usual = {key: text for key, (_, text) in starting.DUTY.items()}
+    usual = {key: text for key, (_, text) in starting.ASKED.items()}
     usual |= {"goal": next(iter(starting.GOALS)), "wall": next(iter(starting.WALLS))}
-    values = starting.duty_answers(answers, "--")
+    values = starting.start_answers(answers, "--")
     arm = values.get("lever_arm")
     assert not isinstance(arm, str)
     missing = [key for key in usual if key not in values]
     if missing and not defaults and not (ask and streams.asking()):
         flags = " ".join(f'--{key} "{usual[key]}"' for key in missing)
-        message = "no terminal to ask for the duty"
+        message = "no terminal to ask for the load"
         raise UsageError(Diagnostic(message, f"add {flags}, or --yes for these defaults"))
     for words, keys in _QUESTIONS:
         open_keys = [key for key in keys if key in missing]
@@ -277,7 +279,7 @@ def _duty(answers: dict[str, str], *, ask: bool, defaults: bool) -> Duty:
             continue
         offered = ", ".join(usual[key] for key in open_keys)
         if defaults:
-            values |= starting.duty_answers({key: usual[key] for key in open_keys})
+            values |= starting.start_answers({key: usual[key] for key in open_keys})
             continue
         choices = {"goal": starting.GOALS, "wall": starting.WALLS}.get(open_keys[0])
         label = words if choices is None else f"{words} ({', '.join(choices)})"
@@ -288,11 +290,11 @@ def _duty(answers: dict[str, str], *, ask: bool, defaults: bool) -> Duty:
             try:
                 if len(parts) != len(open_keys):
                     raise UsageError(Diagnostic(f'"{shown(text)}"', f'write e.g. "{offered}"'))
-                values |= starting.duty_answers(dict(zip(open_keys, parts, strict=True)), arm=arm)
+                values |= starting.start_answers(dict(zip(open_keys, parts, strict=True)), arm=arm)
                 break
             except UsageError as error:
                 streams.err(str(error.diagnostics[0]))
-    return starting.Duty(**values)  # type: ignore[arg-type]
+    return starting.StartAnswers(**values)  # type: ignore[arg-type]
 
 
 def _start_text(

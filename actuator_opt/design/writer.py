@@ -376,7 +376,7 @@ def _insertion(stated: dict[str, Any], loc: Loc, document: Document, writer: _Le
 
 
 _TEXT = """\
-# A hydraulic actuator: its design, duties, variables and requirements.
+# A hydraulic actuator: its design, load cases, variables and requirements.
 #
 # Every physical value has a unit (25 mm, 100 bar, 40 degC, 0.5 %); only 0, ratios and counts
 # may be bare. Every value has a PATH, e.g. cylinder.bore or barrel.layup[1].thickness, for --set

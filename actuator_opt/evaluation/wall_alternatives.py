@@ -238,9 +238,9 @@ def metal_tubes(
     densities: Sequence[float],
     run: ModelRun,
 ) -> tuple[MetalBarrel, ...]:
-    """The wall of the design, and the thinnest barrel for the same duty from each of `METALS`.
+    """The wall of the design, and the thinnest barrel for the same limits from each of `METALS`.
 
-    The duty is the bore growth of the design's wall without axial force, and the required burst
+    The limits are the bore growth of the design's wall without axial force, and the required burst
     pressure, which a wall must reach without and with axial force. If the design's wall has a lower
     burst pressure, or if the burst check is waived, its burst pressure is the requirement.
     """
