@@ -124,7 +124,7 @@ CycleOf = Annotated[
     typer.Option(
         "--cycle",
         metavar="FILE.csv",
-        help="StartAnswers cycle that gives forces, speed and stroke: time with position and force, or "
+        help="Duty cycle that gives forces, speed and stroke: time with position and force, or "
         "with joint_angle and joint_torque (add --lever-arm).",
     ),
 ]

@@ -143,12 +143,8 @@ def sentences(comparison: Comparison) -> list[str]:
         if missed:
             lines.append(f"{label} misses {len(missed)} of its requirements: {', '.join(missed)}")
     lines += below_one(comparison)
-    return [
-        *lines,
-        *optimality(comparison, remedy=True),
-        *unlike(comparison),
-        *conditions(comparison),
-    ]
+    lines += [*optimality(comparison, remedy=True), *unlike(comparison), *conditions(comparison)]
+    return lines
 
 
 def below_one(comparison: Comparison) -> list[str]:
