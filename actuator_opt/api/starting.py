@@ -1,8 +1,9 @@
 """Start designs: a complete, solved design file from a few answers.
 
 The answers are push and pull force, stroke, supply pressure, goal and wall; a lever arm, a speed
-and a stiffness may be added. Simple formulas give sizes, and bounds around them, to a template of one
-line per part. The optimiser then solves this file, and its result is written with round numbers.
+and a stiffness may be added. Simple formulas give sizes, and bounds around them, to a template of
+one line per part. The optimiser then solves this file, and its result is written with round
+numbers.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ import numpy as np
 
 from ...base.numeric import Array, maximum
 from ...base.symbolic import Symbol
-from ...base.symbolic.expression import bounds_of
+from ...base.symbolic.bounds import bounds_of
 from ...design.model import Design
 from ...evaluation import PreparedDesign, plies, rod_strength
 from ...evaluation.barrel import LAMINATES, OWN, Swelling, Wall, compute, kind, wall

@@ -21,7 +21,8 @@ import numpy as np
 
 from ...base.dataclass import dataclass
 from ...base.symbolic import Graph, Symbol
-from ...base.symbolic.expression import bounds_of, needed
+from ...base.symbolic.bounds import bounds_of
+from ...base.symbolic.expression import needed
 from ...evaluation.kernel import ModelRun, Statics, compute, statics
 from ...evaluation.limits import MetricArrays, MetricLimit
 from ...evaluation.values import Values
