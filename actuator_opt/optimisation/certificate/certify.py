@@ -30,7 +30,8 @@ from ..actuator import ActuatorProblem
 from ..problem import Vector
 from ..solution import MET
 from .bounding import Bound, Bounding, KnownExtents, add_plain_sums, ranges
-from .builder import Builder, Envelopes, decays, layered, refuse
+from .builder import Builder
+from .envelopes import Envelopes, decays, layered, refuse
 from .intervals import ROOM, Box, Empty, Layout, narrow, tighten
 from .relaxation import ConstraintRow, Form, Relaxation, Unknown
 
