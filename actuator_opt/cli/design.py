@@ -16,7 +16,7 @@ from ..base import files as store, runs as run_store
 from ..base.errors import Diagnostic, ExitCode, UsageError, shown
 from ..base.tables import encoded
 from . import streams
-from .job import Job
+from .job import COMMON, CommonOptions, Job, with_common_options
 from .options import (
     REPORTS,
     AllPages,
@@ -27,7 +27,6 @@ from .options import (
     Out,
     PluginFile,
     Quiet,
-    Report,
     Seed,
     Set,
     Unset,
@@ -357,31 +356,18 @@ TracesFile = Annotated[
 ]
 
 
+@with_common_options
 def evaluate(
     design: DesignFile,
-    sets: Set = None,
-    unset: Unset = None,
-    plugin: PluginFile = None,
     csv: TracesFile = None,
-    report: Report = False,
-    out: Out = REPORTS,
-    date: Date = None,
-    all_pages: AllPages = False,
-    format: Format = "pdf",
-    seed: Seed = 0,
-    as_json: Json = False,
-    quiet: Quiet = False,
     verbose: Verbose = False,
+    common: CommonOptions = COMMON,
 ) -> ExitCode:
     """Compute all metrics, requirements and checks of a design."""
     from .. import api as verbs
 
-    job = Job(
-        design, sets=sets, unset=unset, plugins=plugin, csv=csv, report=report, out=out, date=date,
-        all_pages=all_pages, format=format,
-        as_json=as_json, quiet=quiet, verbose=verbose,
-    )  # fmt: skip
-    return job.deliver(job.run(verbs.evaluate, seed=seed if report else None))
+    job = common.job(design, csv=csv, verbose=verbose)
+    return job.deliver(job.run(verbs.evaluate, seed=common.seed if common.report else None))
 
 
 def report(

@@ -1,7 +1,7 @@
 """Half-sections of many designs, drawn from a few templates.
 
-As long as no part appears, vanishes or changes its form, every coordinate in `outline.outlines` is a
-linear function of the dimensions. A template contains these functions, which are found by varying
+As long as no part appears, vanishes or changes its form, every coordinate in `outline.outlines` is
+a linear function of the dimensions. A template contains these functions, which are found by varying
 each dimension. A design is drawn from a template that reproduces its outlines; without such a
 template, it is not drawn.
 """
