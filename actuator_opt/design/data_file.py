@@ -138,7 +138,7 @@ class DataFileName(FileName):
         parse: Callable[[DataFile, Mapping[str, Any]], Content],
     ) -> None:
         super().__init__(help, example)
-        self.most = most
+        self.longest = most
         self.parse = parse
 
     def validate(self, value: Any) -> str:
@@ -146,8 +146,8 @@ class DataFileName(FileName):
         if isinstance(value, DataFile):
             return value
         if isinstance(value, str) and "\n" in value:
-            if len(value) > self.most:
-                message = f"the text has more than {self.most} characters"
+            if len(value) > self.longest:
+                message = f"the text has more than {self.longest} characters"
                 raise ValueFault(message, "leave out unneeded columns and digits")
             return value
         return super().validate(value)
@@ -163,7 +163,7 @@ class DataFileName(FileName):
         written = written if "\n" in written else written.strip()
         self.validate(written)
         inside = "\n" in written
-        text = written if inside else read_text(folder / written, most=self.most)
+        text = written if inside else read_text(folder / written, most=self.longest)
         return DataFile(written, text, str(folder))
 
 

@@ -199,14 +199,7 @@ def settling(layers: Sequence[Layer], g: Geometry) -> Settling:
     """Decay length of the wall as a thin shell, and bore growth near the pressure step."""
     stiffnesses = []
     for layer in layers:
-        c = layer.constants
-        stiffness = ply.ply_stiffness(
-            youngs_modulus_1=c["youngs_modulus_1"],
-            youngs_modulus_2=c["youngs_modulus_2"],
-            poissons_ratio_12=c["poissons_ratio_12"],
-            shear_modulus_12=c["shear_modulus_12"],
-        )
-        stiffnesses.append(ply.rotated(stiffness=stiffness, angle=layer.angle))
+        stiffnesses.append(ply.rotated(stiffness=layer.plane_stiffness, angle=layer.angle))
     layer_thicknesses = [layer.thickness for layer in layers]
     axial, cross, hoop = laminate.membrane(plies=stiffnesses, thicknesses=layer_thicknesses)
     middle = (g.inner_radius + g.outer_radius) / 2
