@@ -452,37 +452,44 @@ def compare(
     return job.deliver(comparison, files=[{"path": str(path)} for path in paths])
 
 
+ExportedFile = Annotated[
+    str,
+    typer.Argument(
+        metavar="DESIGN",
+        help="Design file, or scenario that names its design (c or fmu), or - for stdin.",
+    ),
+]
+Formats = Annotated[
+    list[str] | None,
+    typer.Option("--format", metavar="step|dxf|xlsx|c|fmu", help="File format. Repeatable."),
+]
+ExportedScenario = Annotated[
+    str | None,
+    typer.Option(
+        "--scenario",
+        metavar="SCENARIO",
+        help="Write the equations of this scenario with the design instead (c or fmu).",
+    ),
+]
+ExportFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Output folder.")]
+ExportDate = Annotated[
+    str | None,
+    typer.Option(
+        "--date",
+        metavar="YYYY-MM-DD",
+        help="Date in the files; default: none, or SOURCE_DATE_EPOCH.",
+    ),
+]
+
+
 def export(
-    design: Annotated[
-        str,
-        typer.Argument(
-            metavar="DESIGN",
-            help="Design file, or scenario that names its design (c or fmu), or - for stdin.",
-        ),
-    ],
-    formats: Annotated[
-        list[str] | None,
-        typer.Option("--format", metavar="step|dxf|xlsx|c|fmu", help="File format. Repeatable."),
-    ] = None,
-    scenario: Annotated[
-        str | None,
-        typer.Option(
-            "--scenario",
-            metavar="SCENARIO",
-            help="Write the equations of this scenario with the design instead (c or fmu).",
-        ),
-    ] = None,
+    design: ExportedFile,
+    formats: Formats = None,
+    scenario: ExportedScenario = None,
     sets: Set = None,
     unset: Unset = None,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Output folder.")] = REPORTS,
-    date: Annotated[
-        str | None,
-        typer.Option(
-            "--date",
-            metavar="YYYY-MM-DD",
-            help="Date in the files; default: none, or SOURCE_DATE_EPOCH.",
-        ),
-    ] = None,
+    out: ExportFolder = REPORTS,
+    date: ExportDate = None,
     seed: Seed = 0,
     plugin: PluginFile = None,
     as_json: Json = False,

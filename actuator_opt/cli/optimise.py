@@ -44,6 +44,20 @@ if TYPE_CHECKING:
     from ..optimisation.result import Optimisation
 
 
+RelaxSafety = Annotated[
+    bool, typer.Option("--relax-safety", help="If nothing fits, offer lower safety factors, too.")
+]
+ChoiceScheduler = Annotated[
+    str | None,
+    typer.Option(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="Solve combinations of choices on this Dask cluster.",
+    ),
+]
+ReportToo = Annotated[bool, typer.Option("--report", help="Write the report even with --json.")]
+
+
 def optimise(
     design: DesignFile,
     sets: Set = None,
@@ -56,24 +70,12 @@ def optimise(
     certify: Certify = False,
     target: Yield = None,
     verify: VerifyDynamics = None,
-    relax_safety: Annotated[
-        bool,
-        typer.Option("--relax-safety", help="If nothing fits, offer lower safety factors, too."),
-    ] = False,
+    relax_safety: RelaxSafety = False,
     seconds: Seconds = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(
-            "--scheduler",
-            metavar="ADDRESS",
-            help="Solve combinations of choices on this Dask cluster.",
-        ),
-    ] = None,
+    scheduler: ChoiceScheduler = None,
     write: Write = None,
     out: Out = REPORTS,
-    report: Annotated[
-        bool, typer.Option("--report", help="Write the report even with --json.")
-    ] = False,
+    report: ReportToo = False,
     date: Date = None,
     all_pages: AllPages = False,
     format: Format = "pdf",
