@@ -84,7 +84,7 @@ class DataFile(str):
         *args: Settings.args,
         **settings: Settings.kwargs,
     ) -> Parsed:
-        """What a function makes of this file, computed once for the same settings."""
+        """Result of a function of this file, computed once for the same settings."""
         key = (parse, args, tuple(sorted(settings.items())))
         if key not in self._parsed:
             self._parsed[key] = parse(self, *args, **settings)
@@ -111,7 +111,7 @@ class DataFile(str):
 
 
 class Content(Protocol):
-    """What a data file states, parsed."""
+    """Parsed content of a data file."""
 
     @property
     def digest(self) -> str:

@@ -16,7 +16,7 @@ from .structure import Loc, child_at, entries
 
 @cache
 def _keys(root: type[Section]) -> tuple[tuple[tuple[str | None, ...], DataFileName], ...]:
-    """Locations of all keys in a file that name data files; None stands for an index."""
+    """Locations of all keys in a file that name data files; None represents an index."""
     keys: list[tuple[tuple[str | None, ...], DataFileName]] = []
     for name, entry in entries(root).items():
         if isinstance(entry.kind, DataFileName):
