@@ -32,7 +32,7 @@ from .reports import ReportArguments, page_of, report_files
 
 if TYPE_CHECKING:
     from ..optimisation.pareto import ParetoFront
-    from ..optimisation.prices import Sensitivity
+    from ..optimisation.price_table import Sensitivity
     from ..optimisation.result import Optimisation
     from ..pages import ReportFile
     from ..rendering.blocks import Page

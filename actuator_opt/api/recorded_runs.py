@@ -298,7 +298,6 @@ def record_run(
     ------
     InputError : the record cannot be written
     """
-    from ..design.flow_tables import self_contained
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
 
@@ -317,7 +316,7 @@ def record_run(
         "spec_hash": spec_hash(actuator.subject()),
         "seed": seed,
     }
-    text = to_yaml(design) if source is None else self_contained(source.text, design)
+    text = to_yaml(design) if source is None else source.text
     common_body = {
         "date": date or date_from_environment(),
         "input": {
@@ -335,8 +334,8 @@ def record_run(
 
 
 def _files(actuator: Actuator) -> dict[str, dict[str, str]]:
-    """Texts of the cycle files that a design names, if it names any."""
-    from ..design.cycle_reader import texts_of
+    """Texts of the data files that a design names, if it names any."""
+    from ..design.data_file import texts_of
 
     files = texts_of(actuator.design)
     return {"files": files} if files else {}

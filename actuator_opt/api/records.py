@@ -72,15 +72,12 @@ def read_record(
         the file does not exist; a column is unknown or repeated; a unit is missing; or a cell is
         not a number
     """
-    from ..base.files import read_bytes
-    from ..base.sheets import decode_sheet
+    from ..base.sheets import read_text
     from ..identification import column_units, parse_record
 
     known_units = column_units(units)
-    kinds = (".csv", ".txt", ".tsv")
     name = "<stdin>" if str(source) == "-" else str(source)
-    data = read_bytes(source, most=MOST_BYTES + 1, kinds=kinds, what="CSV file")
-    text = decode_sheet(data, name, most=MOST_BYTES)
+    text = read_text(source, most=MOST_BYTES)
     return parse_record(text, name=name, columns=columns, units=known_units, needed=needed)
 
 

@@ -187,14 +187,13 @@ def origin(
     design: Design, source: FileSource | None, *, command: str = "", date: str | None = None
 ) -> Origin:
     """The origin stated on a page: the file as read, or else the design's text."""
-    from ..design.cycle_reader import texts_of
-    from ..design.flow_tables import self_contained
+    from ..design.data_file import texts_of
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
     from ..rendering.blocks import Origin
 
     return Origin(
-        source_text=to_yaml(design) if source is None else self_contained(source.text, design),
+        source_text=to_yaml(design) if source is None else source.text,
         source_name=file_name(design, source),
         command=command,
         spec_hash=spec_hash(prepare(design)),
@@ -251,14 +250,14 @@ def save(
 ) -> Path:
     """Write a design file with full precision; comments and order are kept if possible.
 
-    Names of cycle files become relative to the folder of the new file.
+    Names of data files become relative to the folder of the new file.
 
     For an optimisation, the design to build is written, and the first line marks the file as an
     optimum. This mark is omitted for a design with custom metrics, which may change independently
     of the file.
     """
     from ..base.files import write_text
-    from ..design.cycle_reader import moved
+    from ..design.data_file import moved
     from ..design.writer import to_yaml
     from ..optimisation.result import Optimisation
 

@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
 MOST_BYTES = 200_000_000
 """Largest permitted file of a recorded input [bytes]: our choice."""
-_TABLES = (".csv", ".txt", ".tsv")
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,8 +159,7 @@ MOST_PERIODS = 100
 
 def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tuple[Array, Array]]:
     """Columns of the records that the scenario's signals use, by file and column."""
-    from ..base.files import read_bytes
-    from ..base.sheets import decode_sheet
+    from ..base.sheets import read_text
     from ..design.scenario import recorded_parts
     from ..identification import column_units, parse_column
 
@@ -173,9 +171,7 @@ def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tupl
         name = str(loaded.folder / file)
         try:
             if file not in texts:
-                path_of = loaded.folder / file
-                data = read_bytes(path_of, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
-                texts[file] = decode_sheet(data, name, most=MOST_BYTES)
+                texts[file] = read_text(name, most=MOST_BYTES)
             records[file, column] = parse_column(
                 texts[file], column, dimension, name=name, units=known_units
             )
@@ -350,8 +346,7 @@ def compare_measured(
     InputError
         as for `read_scenario`; or record and simulation do not overlap, or a parameter is unknown
     """
-    from ..base.files import read_bytes
-    from ..base.sheets import decode_sheet
+    from ..base.sheets import read_text
     from ..identification import column_units
     from ..simulation.linear import tune
     from ..simulation.measured import overlay, parse_measured
@@ -359,10 +354,10 @@ def compare_measured(
     from ..simulation.run import spec_of
 
     trial = as_trial(scenario)
-    name = str(record)
-    data = read_bytes(record, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
-    text = decode_sheet(data, name, most=MOST_BYTES)
-    measured = parse_measured(text, name=name, columns=columns, units=column_units(units))
+    measured = parse_measured(
+        read_text(record, most=MOST_BYTES),
+        name=str(record), columns=columns, units=column_units(units),
+    )  # fmt: skip
     with placed(trial):
         if not fit:
             simulation = simulation or simulate(

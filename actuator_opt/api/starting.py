@@ -1,9 +1,9 @@
-"""Start designs: a complete, solved design file from a duty of five answers.
+"""Start designs: a complete, solved design file from a few answers.
 
-The duty is push and pull force, stroke, supply pressure, goal and wall; a lever arm, a speed and a
-stiffness may be added. Simple formulas give sizes, and bounds around them, to a template of one
-line per part. The optimiser then solves this file, and
-its result is written with round numbers.
+The answers are push and pull force, stroke, supply pressure, goal and wall; a lever arm, a speed
+and a stiffness may be added. Simple formulas give sizes, and bounds around them, to a template of
+one line per part. The optimiser then solves this file, and its result is written with round
+numbers.
 """
 
 from __future__ import annotations
@@ -31,20 +31,20 @@ from ..optimisation.result import Optimisation
 from ..optimisation.solution import MET
 from .actuator import Actuator, read
 
-DUTY: Mapping[str, tuple[Quantity, str]] = {
+ASKED: Mapping[str, tuple[Quantity, str]] = {
     "push": (INPUTS["force"], "5 kN"),
     "pull": (INPUTS["force"], "3 kN"),
     "stroke": (INPUTS["stroke"], "100 mm"),
     "pressure": (INPUTS["working_pressure"], "160 bar"),
 }
-"""The numbers of a duty, each with its quantity and default."""
+"""The numbers that every start design needs, each with its quantity and default."""
 
 ADDED: Mapping[str, Quantity] = {
     "lever_arm": INPUTS["lever_arm"],
     "speed": INPUTS["speed"],
     "stiffness": METRICS["stiffness_min"],
 }
-"""Numbers that may be added to a duty; without them there is no lever arm and no such limit."""
+"""Numbers that may be added; without them there is no lever arm and no such limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,7 +144,7 @@ ROUNDING = 5e-5
 LIFE = 0.1
 """The same for `cycle_life`, which falls with a high power of the stress."""
 STARTS = 4
-"""Number of local searches; more than four were no better for twelve random duties."""
+"""Number of local searches; more than four were no better for twelve random loads."""
 
 ROD_THREADS = (
     (4, 0.5), (5, 0.5), (6, 0.75), (8, 1), (10, 1.25), (12, 1.25), (14, 1.5), (16, 1.5), (18, 1.5),
@@ -175,7 +175,7 @@ _HOLLOW = 0.8
 
 
 @dataclass(frozen=True, slots=True)
-class Duty:
+class StartAnswers:
     """Forces, stroke and supply pressure of an actuator (SI), its goal, wall and type.
 
     With a lever arm, the file states torques. Without `stiffness` there is no such limit.
@@ -200,7 +200,7 @@ class Duty:
     @property
     def words(self) -> str:
         """Forces, stroke and supply pressure in words."""
-        short = {key: quantity.text(getattr(self, key)) for key, (quantity, _) in DUTY.items()}
+        short = {key: quantity.text(getattr(self, key)) for key, (quantity, _) in ASKED.items()}
         return "{push} push, {pull} pull, {stroke} stroke at {pressure}".format(**short)
 
 
@@ -243,7 +243,7 @@ def start(
     type: str = "differential",
     name: str = "my actuator",
 ) -> Actuator:
-    """A complete design for a duty, solved, and with round numbers.
+    """A complete design for two load cases, solved, and with round numbers.
 
     Every number is SI, or a text with a unit. If nothing fits, this is the nearest design, and
     `evaluate` lists what it misses.
@@ -270,23 +270,23 @@ def start(
         "push": push, "pull": pull, "stroke": stroke, "pressure": pressure, "goal": goal,
         "wall": wall, "lever_arm": lever_arm, "speed": speed, "stiffness": stiffness, "type": type,
     }  # fmt: skip
-    values = duty_answers({key: value for key, value in stated.items() if value is not None})
-    duty = Duty(**values)  # type: ignore[arg-type]
-    return solved_start(duty, name).actuator
+    values = start_answers({key: value for key, value in stated.items() if value is not None})
+    answers = StartAnswers(**values)  # type: ignore[arg-type]
+    return solved_start(answers, name).actuator
 
 
 _WORDS: Mapping[str, Mapping[str, object]] = {"goal": GOALS, "wall": WALLS, "type": TYPES}
 """The words that each answer in words may be."""
 
 
-def duty_answers(
+def start_answers(
     stated: Mapping[str, object], prefix: str = "", arm: float | None = None
 ) -> dict[str, float | str]:
-    """Answers of a duty: numbers in SI, and words; a fault names an answer as ``prefix + key``.
+    """Answers as numbers in SI and words; a fault names an answer as ``prefix + key``.
 
     With a lever arm, among the answers or as `arm` [m], a force may be stated as a torque.
 
-    >>> duty_answers({"push": "540 N*m", "lever_arm": "60 mm", "wall": "lined carbon"})
+    >>> start_answers({"push": "540 N*m", "lever_arm": "60 mm", "wall": "lined carbon"})
     {'push': 9000.0, 'lever_arm': 0.06, 'wall': 'lined_carbon'}
 
     Raises
@@ -302,7 +302,7 @@ def duty_answers(
 
 
 def _number(key: str, value: object, prefix: str, arm: float | None) -> float:
-    quantity = ADDED[key] if key in ADDED else DUTY[key][0]
+    quantity = ADDED[key] if key in ADDED else ASKED[key][0]
     try:
         if quantity.dimension == "force" and isinstance(value, str) and _is_torque(value):
             torque = read_quantity(value, INPUTS["torque"])
@@ -333,29 +333,31 @@ def _word(key: str, value: str, prefix: str) -> str:
     return word
 
 
-def solved_start(duty: Duty, name: str = "my actuator") -> Start:
+def solved_start(answers: StartAnswers, name: str = "my actuator") -> Start:
     """A start design with its verdict; `name` and faults as for `start`."""
     try:
         title = Text().validate(name)
     except ValueFault as fault:
         raise UsageError(Diagnostic(f"name: {fault.message}", fault.remedy)) from None
-    if duty.push == 0 and duty.pull == 0:
+    if answers.push == 0 and answers.pull == 0:
         raise UsageError(Diagnostic("push and pull: both are 0", "state a force"))
-    sizes = _first_sizes(duty)
-    light = _solved(replace(duty, goal="mass"), sizes, title)
-    if not light.met and duty.stiffness is not None:
-        sizes = _first_sizes(replace(duty, stiffness=STIFFER * duty.stiffness))
-        light = _solved(replace(duty, goal="mass"), sizes, title)
-    if duty.goal == "mass" or not light.met:
+    sizes = _first_sizes(answers)
+    light = _solved(replace(answers, goal="mass"), sizes, title)
+    if not light.met and answers.stiffness is not None:
+        sizes = _first_sizes(replace(answers, stiffness=STIFFER * answers.stiffness))
+        light = _solved(replace(answers, goal="mass"), sizes, title)
+    if answers.goal == "mass" or not light.met:
         return light
-    return _solved(duty, sizes, title, light.actuator.design)
+    return _solved(answers, sizes, title, light.actuator.design)
 
 
-def _solved(duty: Duty, sizes: _Sizes, title: str, lightest: Design | None = None) -> Start:
+def _solved(
+    answers: StartAnswers, sizes: _Sizes, title: str, lightest: Design | None = None
+) -> Start:
     """Solve the template, with stops in the cylinder if possible, else outside it."""
     stops = ("external",) if sizes.stop_outside else ("internal", "external")
     limit = None if lightest is None else HEAVIER * _mass(lightest)
-    templates = [read(_text(duty, sizes, title, stop, limit)) for stop in stops]
+    templates = [read(_text(answers, sizes, title, stop, limit)) for stop in stops]
     if lightest is not None:
         templates = [
             replace(x, design=with_values(x.design, _values(lightest, x.design))) for x in templates
@@ -485,7 +487,7 @@ class _Sizes:
         return max(4e-3, sqrt(2.2 * self.stall / (2 * pi / 4 * 0.577 * _ROD_YIELD)))
 
 
-def _first_sizes(duty: Duty) -> _Sizes:
+def _first_sizes(answers: StartAnswers) -> _Sizes:
     """Bore, rod and wall from simple formulas, each with some reserve.
 
     The rod is a hollow column over twice the stroke that carries the stall force with the
@@ -496,18 +498,18 @@ def _first_sizes(duty: Duty) -> _Sizes:
     this force by its area; above proof pressure the stops must be outside. A second rod takes as
     much from the area for the push as the rod from that for the pull.
     """
-    pressure, back = duty.pressure, duty.return_pressure
+    pressure, back = answers.pressure, answers.return_pressure
     bore = rod = 6e-3
     for _ in range(80):  # converges: rod area grows with the root of the bore's area
-        area = _pushed(duty, bore, rod)
-        inertia = 0.9 * BUCKLING * pressure * area * (2 * duty.stroke + 0.05) ** 2
+        area = _pushed(answers, bore, rod)
+        inertia = 0.9 * BUCKLING * pressure * area * (2 * answers.stroke + 0.05) ** 2
         inertia /= pi**2 * _ROD_MODULUS
         column = (64 * inertia / (pi * (1 - _HOLLOW**4))) ** 0.25
-        tension = sqrt(4 * 2.2 * duty.pull / (pi * 0.9 * _ROD_YIELD * (1 - _HOLLOW**2)))
+        tension = sqrt(4 * 2.2 * answers.pull / (pi * 0.9 * _ROD_YIELD * (1 - _HOLLOW**2)))
         rod = max(6e-3, column, tension)
-        needed = max(duty.push / pressure, duty.pull / (pressure - back)) * 1.06
-        needed = max(needed, (duty.stiffness or 0.0) * duty.stroke / _OIL)
-        beside = duty.pull if duty.type == "differential" else max(duty.pull, duty.push)
+        needed = max(answers.push / pressure, answers.pull / (pressure - back)) * 1.06
+        needed = max(needed, (answers.stiffness or 0.0) * answers.stroke / _OIL)
+        beside = answers.pull if answers.type == "differential" else max(answers.pull, answers.push)
         pulled = 1.06 * beside / (pressure - back) + pi / 4 * rod**2
         bore += 0.5 * (max(sqrt(4 / pi * max(needed, pulled)), rod + 8e-3) - bore)
     if bore > LARGEST:
@@ -518,12 +520,12 @@ def _first_sizes(duty: Duty) -> _Sizes:
                 "raise the pressure, or lower force or stroke",
             )
         )
-    area, ring = _pushed(duty, bore, rod), pi / 4 * (bore**2 - rod**2)
+    area, ring = _pushed(answers, bore, rod), pi / 4 * (bore**2 - rod**2)
     peak = max(
-        2 * (pressure * area - back * ring - duty.push) / ring,
-        2 * (pressure * ring - back * area - duty.pull) / area,
+        2 * (pressure * area - back * ring - answers.push) / ring,
+        2 * (pressure * ring - back * area - answers.pull) / area,
     )
-    wall = WALLS[duty.wall]
+    wall = WALLS[answers.wall]
     thickness = max(1.3 * BURST * pressure * bore / 2 / wall.strength, 1e-3)
     if wall.joint == "thread":  # metal that must remain under the thread
         thickness = max(thickness, 1.1e-3 + 0.62 * max(1e-3, 0.02 * bore))
@@ -542,9 +544,9 @@ def _first_sizes(duty: Duty) -> _Sizes:
     )
 
 
-def _pushed(duty: Duty, bore: float, rod: float) -> float:
+def _pushed(answers: StartAnswers, bore: float, rod: float) -> float:
     """Area of the chamber that pushes: the piston's, or the annulus around a second rod."""
-    return pi / 4 * (bore**2 - (rod**2 if duty.type == "double_rod" else 0.0))
+    return pi / 4 * (bore**2 - (rod**2 if answers.type == "double_rod" else 0.0))
 
 
 def _thread(sizes: Sequence[tuple[float, float]], square: float) -> tuple[float, float]:
@@ -640,7 +642,7 @@ _TEMPLATE = """\
 # Every value has a PATH, such as cylinder.bore, for --set and for `variables`.
 name: @name@
 
-# Duty: every requirement holds in the worst load case.
+# Every requirement holds in the worst load case.
 load_cases:
 @cases@
 requirements:                   # besides those of the check list
@@ -684,22 +686,22 @@ def _bounds(path: str, lower: float, upper: float) -> str:
     return f"  {path}: {{lower: {_mm(lower)}, upper: {_mm(upper)}}}"
 
 
-def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) -> str:
+def _text(answers: StartAnswers, sizes: _Sizes, title: str, stop: str, mass: float | None) -> str:
     """The template with first sizes; `mass` is the largest mass, if limited."""
-    wall, bore, rod = WALLS[duty.wall], sizes.bore, sizes.rod
-    stated = {key: exact_text(getattr(duty, key), DUTY[key][0]) for key in DUTY}
+    wall, bore, rod = WALLS[answers.wall], sizes.bore, sizes.rod
+    stated = {key: exact_text(getattr(answers, key), ASKED[key][0]) for key in ASKED}
     limits = []
-    if duty.stiffness is not None:
-        least = exact_text(duty.stiffness, ADDED["stiffness"])
+    if answers.stiffness is not None:
+        least = exact_text(answers.stiffness, ADDED["stiffness"])
         limits.append(f"  stiffness_min: {{min: {least}}}".ljust(30) + "  # least over the stroke")
     if mass is not None:
         limit = f"  mass: {{max: {1e3 * mass:.4g} g}}".ljust(30)
         limits.append(f"{limit}  # {HEAVIER} x the lightest")
     cases = [
-        f"  - {{name: {key}, direction: {key}, {_load(duty, key)}, "
-        f"speed: {exact_text(duty.speed, ADDED['speed'])}}}"
+        f"  - {{name: {key}, direction: {key}, {_load(answers, key)}, "
+        f"speed: {exact_text(answers.speed, ADDED['speed'])}}}"
         for key in ("push", "pull")
-        if getattr(duty, key) > 0
+        if getattr(answers, key) > 0
     ]
     layers = [
         f"    - {{material: {material}, {f'angle: {angle}, ' if angle else ''}"
@@ -709,20 +711,20 @@ def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) 
     joint = _JOINTS[wall.joint](sizes)
     fields = {
         "wall": wall.words.capitalize(),
-        "goal": GOALS[duty.goal].words,
-        "asked": duty.words,
+        "goal": GOALS[answers.goal].words,
+        "asked": answers.words,
         "name": scalar(title),
         "cases": "\n".join(cases),
         "limits": "".join(f"{line}\n" for line in limits),
-        "objective": GOALS[duty.goal].objective,
+        "objective": GOALS[answers.goal].objective,
         "pressure": stated["pressure"],
-        "return_pressure": exact_text(duty.return_pressure, DUTY["pressure"][0]),
+        "return_pressure": exact_text(answers.return_pressure, ASKED["pressure"][0]),
         "cure": ", cure_temperature: 120 degC" if len(wall.layers) > 1 else "",
         "bore": _mm(bore),
         "stroke": stated["stroke"],
-        "type": TYPES[duty.type],
+        "type": TYPES[answers.type],
         "stop": stop,
-        "port": f"{ceil(max(3.0, 1e3 * bore * sqrt(duty.speed / PORT_SPEED)))} mm",
+        "port": f"{ceil(max(3.0, 1e3 * bore * sqrt(answers.speed / PORT_SPEED)))} mm",
         "layers": "\n".join(layers),
         "rod": _mm(rod),
         "inner": _mm(min(_HOLLOW * rod, rod - 2.2e-3)),
@@ -736,19 +738,19 @@ def _text(duty: Duty, sizes: _Sizes, title: str, stop: str, mass: float | None) 
         "cap": _mm(0.18 * bore),
         "joint": joint.line,
         "pin": f"{ceil(1e3 * sizes.pin)} mm",
-        "seals": "\n".join(_seals(duty, sizes)),
+        "seals": "\n".join(_seals(answers, sizes)),
         "bounds": "\n".join([*_part_bounds(wall, sizes), *joint.bounds]),
     }
     return re.sub(r"@(\w+)@", lambda match: fields[match[1]], _TEMPLATE)
 
 
-def _load(duty: Duty, key: str) -> str:
+def _load(answers: StartAnswers, key: str) -> str:
     """The load of a direction: a force, or a torque on the lever arm."""
-    force = getattr(duty, key)
-    if duty.lever_arm is None:
-        return f"force: {exact_text(force, DUTY[key][0])}"
-    torque = exact_text(force * duty.lever_arm, INPUTS["torque"])
-    return f"joint_torque: {torque}, lever_arm: {exact_text(duty.lever_arm, ADDED['lever_arm'])}"
+    force = getattr(answers, key)
+    if answers.lever_arm is None:
+        return f"force: {exact_text(force, ASKED[key][0])}"
+    torque = exact_text(force * answers.lever_arm, INPUTS["torque"])
+    return f"joint_torque: {torque}, lever_arm: {exact_text(answers.lever_arm, ADDED['lever_arm'])}"
 
 
 def _part_bounds(wall: StartWall, sizes: _Sizes) -> list[str]:
@@ -770,9 +772,9 @@ def _part_bounds(wall: StartWall, sizes: _Sizes) -> list[str]:
     ]
 
 
-def _seals(duty: Duty, sizes: _Sizes) -> list[str]:
+def _seals(answers: StartAnswers, sizes: _Sizes) -> list[str]:
     """O-rings of piston, rod and ends, with back-up rings where their gap needs them."""
-    compound, back_up = _compound(duty.pressure, GAP_RATIO * sizes.clearance)
+    compound, back_up = _compound(answers.pressure, GAP_RATIO * sizes.clearance)
     lines = []
     for place, diameter, rings in (("piston", sizes.bore, "both"), ("rod", sizes.rod, "one")):
         section = _section(diameter)

@@ -11,11 +11,11 @@ from pathlib import Path
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, UsageError
 from ..base.quantities import INPUTS
-from ..design.cycle_files import CycleFile
+from ..base.sheets import read_text
 from ..design.cycle_peaks import CyclePeaks, peaks
-from ..design.cycle_reader import moved, texts_of
-from ..design.cycle_record import cycle_text
-from ..design.duty import DutyCycle, DutySection
+from ..design.cycle_record import MOST_BYTES
+from ..design.data_file import DataFile, moved, texts_of
+from ..design.duty import DutyCycle, DutySection, cycle_of
 from ..design.model import Linkage
 from ..design.reader import LoadedDesign
 from ..design.writer import exact_text, init_text, scalar
@@ -88,7 +88,7 @@ class CycleStart:
         """The start design with the block `duty`, and the cycle's file."""
         source = start.actuator.source
         assert source is not None
-        assert isinstance(self.cycle.file, CycleFile)
+        assert isinstance(self.cycle.file, DataFile)
         arm = self.cycle.lever_arm
         line = "" if arm is None else f"      lever_arm: {exact_text(arm, INPUTS['lever_arm'])}\n"
         block = _BLOCK.replace("@NAME@", scalar(self.cycle.name)).replace("@ARM@", line)
@@ -123,8 +123,8 @@ def cycle_start(
     relative = Path(os.path.relpath(path, folder or ".")).as_posix()
     if path.is_absolute():
         relative = str(path)
-    own = CycleFile(relative, cycle_text(path), str(folder))
-    record = own.record(closed=True)
+    own = DataFile(relative, read_text(path, most=MOST_BYTES), str(folder))
+    record = own.parsed(cycle_of, closed=True)
     if record.joint and lever_arm is None and linkage is None:
         message = f"{file}: states the motion of a joint"
         remedy = 'add e.g. --lever-arm "40 mm", or --from a design with a linkage'

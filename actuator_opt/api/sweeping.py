@@ -119,20 +119,15 @@ def sweep(
     engine = usable_engine(engine, reduced=reduce)
     _require_workers(workers)
     files = [Path(file) for file in (store, csv, parquet) if file is not None]
-    _require_distinct(files)
-    if reduce and files:
-        message = "--reduce keeps only the best designs, so there are no other rows to write"
-        raise UsageError(Diagnostic(message, "omit --store, --csv and --parquet"))
+    _require_distinct(files, reduced=reduce)
     actuator = as_actuator(design, plugins)
     for file in files:
         require_apart(file, *_read_from(actuator))
     subject = _sweepable(actuator)
     only = _only(metrics, subject.quantities, store)
     points = _points(actuator, subject, vary, method, n, seed)
-    if points.count > LARGE and not reduce and not yes:
-        message = f"all {points.count:,} points would be evaluated in full".replace(",", " ")
-        remedy = "confirm with --yes, or keep only the best with --reduce best:K"
-        raise UsageError(Diagnostic(message, remedy))
+    if not reduce and not yes:
+        _require_few(points.count)
     if engine == "gpu":
         _require_gpu(actuator, scheduler)
     study = study_of(actuator, points, full=not reduce, show=show, engine=engine, only=only)
@@ -305,8 +300,22 @@ def _points(
     return plan(axes, method=method, count=count, seed=seed)
 
 
-def _require_distinct(files: Sequence[Path]) -> None:
-    """Reject standard output, and a file that is given twice; raises `UsageError`."""
+def _require_few(count: int) -> None:
+    """Reject a full sweep of too many points that is not confirmed; raises `UsageError`."""
+    if count > LARGE:
+        message = f"all {count:,} points would be evaluated in full".replace(",", " ")
+        remedy = "confirm with --yes, or keep only the best with --reduce best:K"
+        raise UsageError(Diagnostic(message, remedy))
+
+
+def _require_distinct(files: Sequence[Path], *, reduced: bool) -> None:
+    """Reject files of a reduced sweep, standard output, and a file that is given twice.
+
+    Raises `UsageError`.
+    """
+    if reduced and files:
+        message = "--reduce keeps only the best designs, so there are no other rows to write"
+        raise UsageError(Diagnostic(message, "omit --store, --csv and --parquet"))
     if Path("-") in files:
         message = "-: standard output is used for the results"
         raise UsageError(Diagnostic(message, "name a file for --store, --csv or --parquet"))

@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ import numpy as np
 from . import units
 from .dataclass import dataclass
 from .errors import Diagnostic, InputError, shown
+from .files import read_bytes
 from .numeric import Array
 
 ABSENT = {"", "-", "--", "na", "n/a", "nan", "-nan", "null", "none", "#n/a", "inf", "-inf", "+inf"}
@@ -27,6 +29,19 @@ _ZIP = b"PK\x03\x04"
 _COMMENT = re.compile(r"\s*#(?!n/a)", re.IGNORECASE)
 _MISREAD = (("Âµ", "µ"), ("Î¼", "µ"), ("Â°", "°"), ("Â²", "²"), ("Â·", "·"))
 """UTF-8 characters as they look if a program has read them as Latin-1, each with its correction."""
+
+
+def read_text(source: str | Path, *, most: int) -> str:
+    """Text of a CSV file of at most `most` bytes; ``"-"`` is standard input.
+
+    Raises
+    ------
+    InputError
+        an unreadable file, a workbook, or a file that is too large
+    """
+    name = "<stdin>" if str(source) == "-" else str(source)
+    data = read_bytes(source, most=most + 1, kinds=(".csv", ".txt", ".tsv"), what="CSV file")
+    return decode_sheet(data, name, most=most)
 
 
 def decode_sheet(data: bytes, name: str, *, most: int | None = None) -> str:
@@ -44,7 +59,8 @@ def decode_sheet(data: bytes, name: str, *, most: int | None = None) -> str:
         a spreadsheet workbook, another archive, or a file that is too large
     """
     if most is not None and len(data) > most:
-        message = f"the file is larger than {most / 1e6:.0f} MB"
+        size = f"{most / 1e6:.0f} MB" if most >= 1e6 else f"{most / 1e3:.0f} kB"
+        message = f"the file is larger than {size}"
         remedy = "leave out unneeded columns and digits, or give a part of the record"
         raise InputError(Diagnostic(message, remedy, file=name))
     if data.startswith(_ZIP):

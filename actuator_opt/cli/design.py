@@ -16,7 +16,7 @@ from ..base import files as store, runs as run_store
 from ..base.errors import Diagnostic, ExitCode, UsageError, shown
 from ..base.tables import encoded
 from . import streams
-from .job import Job
+from .job import COMMON, CommonOptions, Job, with_common_options
 from .options import (
     REPORTS,
     AllPages,
@@ -27,7 +27,6 @@ from .options import (
     Out,
     PluginFile,
     Quiet,
-    Report,
     Seed,
     Set,
     Unset,
@@ -38,7 +37,7 @@ from .options import (
 
 if TYPE_CHECKING:
     from ..api import Restored
-    from ..api.starting import Duty, Start
+    from ..api.starting import Start, StartAnswers
     from ..api.starting_cycle import CycleStart
 
 
@@ -65,7 +64,7 @@ NewName = Annotated[
     typer.Argument(
         metavar="NAME",
         help="Name of the actuator or scenario; NAME.yaml is written. "
-        "Without a name the text is printed; without a duty it is a template of all keys.",
+        "Without a name the text is printed; without forces it is a template of all keys.",
     ),
 ]
 Source = Annotated[
@@ -188,11 +187,11 @@ def init(
         remarks = [f"warning: {text}" for text in joint.warnings]
     elif answers or cycle or yes or (out is not None and not copied):
         found = _cycle(cycle, answers, out)
-        duty = _duty(answers, ask=not as_json, defaults=yes)
-        start = _solved(job, duty, found, title)
+        complete = _complete(answers, ask=not as_json, defaults=yes)
+        start = _solved(job, complete, found, title)
         text, verdict = start.text, {"met": start.met}
         if start.met:
-            remarks = [f"{duty.words}, solved: {start.solved}; edit it, or optimise it"]
+            remarks = [f"{complete.words}, solved: {start.solved}; edit it, or optimise it"]
         else:
             faults = [Diagnostic("nothing fits yet", start.sentence, str(out or ""))]
             verdict["remedy"] = start.sentence
@@ -216,12 +215,14 @@ def _joined(
     source: str, file: str, lever_arm: str | None, out: Path | None, title: dict[str, str]
 ) -> tuple[CycleStart, Start]:
     """A copy of a design, named by `title`, with the cycle in a file."""
-    from ..api.starting import duty_answers
+    from ..api.starting import start_answers
     from ..api.starting_cycle import cycle_start
     from ..design import read_design
     from ..design.kinds import ValueFault
 
-    arm = duty_answers({} if lever_arm is None else {"lever_arm": lever_arm}, "--").get("lever_arm")
+    arm = start_answers({} if lever_arm is None else {"lever_arm": lever_arm}, "--").get(
+        "lever_arm"
+    )
     assert not isinstance(arm, str)
     folder = Path() if out is None else out.parent
     loaded = read_design(source)
@@ -233,7 +234,7 @@ def _joined(
 
 
 def _only_one(sources: Mapping[str, object]) -> None:
-    """Refuse two sources of the file; a design, a scenario and a duty exclude each other."""
+    """Refuse two sources of the file; a design, a scenario and answers exclude each other."""
     stated = [option for option, value in sources.items() if value is not None]
     copies = [option for option in stated if option in ("--scenario", "--from")]
     if copies and len(stated) > 1:
@@ -255,11 +256,13 @@ def _target(name: str | None, out: Path | None) -> tuple[dict[str, str], Path | 
     return title, out
 
 
-def _solved(job: Job, duty: Duty, cycle: CycleStart | None, title: dict[str, str]) -> Start:
+def _solved(
+    job: Job, answers: StartAnswers, cycle: CycleStart | None, title: dict[str, str]
+) -> Start:
     """The solved start design named by `title`, with its cycle."""
     from ..api.starting import solved_start
 
-    start: Start = job.run(solved_start, duty, **title)
+    start: Start = job.run(solved_start, answers, **title)
     return start if cycle is None else cycle.added_to(start)
 
 
@@ -267,11 +270,11 @@ def _cycle(file: str | None, answers: dict[str, str], out: Path | None) -> Cycle
     """The cycle in a file, if one is named; its forces, speed and stroke become answers."""
     if file is None:
         return None
-    from ..api.starting import duty_answers
+    from ..api.starting import start_answers
     from ..api.starting_cycle import cycle_start
 
     stated = {"lever_arm": answers["lever_arm"]} if "lever_arm" in answers else {}
-    arm = duty_answers(stated, "--").get("lever_arm")
+    arm = start_answers(stated, "--").get("lever_arm")
     assert not isinstance(arm, str)
     found = cycle_start(file, lever_arm=arm, folder=Path() if out is None else out.parent)
     answers.update(found.answers | answers)
@@ -288,8 +291,8 @@ _QUESTIONS = (
 """Questions of `init`, each with the keys that it answers."""
 
 
-def _duty(answers: dict[str, str], *, ask: bool, defaults: bool) -> Duty:
-    """The duty from stated answers, from questions on a terminal, or from defaults.
+def _complete(answers: dict[str, str], *, ask: bool, defaults: bool) -> StartAnswers:
+    """All answers: as stated, from questions on a terminal, or from defaults.
 
     Raises
     ------
@@ -297,15 +300,15 @@ def _duty(answers: dict[str, str], *, ask: bool, defaults: bool) -> Duty:
     """
     from ..api import starting
 
-    usual = {key: text for key, (_, text) in starting.DUTY.items()}
+    usual = {key: text for key, (_, text) in starting.ASKED.items()}
     usual |= {"goal": next(iter(starting.GOALS)), "wall": next(iter(starting.WALLS))}
-    values = starting.duty_answers(answers, "--")
+    values = starting.start_answers(answers, "--")
     arm = values.get("lever_arm")
     assert not isinstance(arm, str)
     missing = [key for key in usual if key not in values]
     if missing and not defaults and not (ask and streams.asking()):
         flags = " ".join(f'--{key} "{usual[key]}"' for key in missing)
-        message = "no terminal to ask for the duty"
+        message = "no terminal to ask for the load"
         raise UsageError(Diagnostic(message, f"add {flags}, or --yes for these defaults"))
     for words, keys in _QUESTIONS:
         open_keys = [key for key in keys if key in missing]
@@ -313,7 +316,7 @@ def _duty(answers: dict[str, str], *, ask: bool, defaults: bool) -> Duty:
             continue
         offered = ", ".join(usual[key] for key in open_keys)
         if defaults:
-            values |= starting.duty_answers({key: usual[key] for key in open_keys})
+            values |= starting.start_answers({key: usual[key] for key in open_keys})
             continue
         choices = {"goal": starting.GOALS, "wall": starting.WALLS}.get(open_keys[0])
         label = words if choices is None else f"{words} ({', '.join(choices)})"
@@ -324,11 +327,11 @@ def _duty(answers: dict[str, str], *, ask: bool, defaults: bool) -> Duty:
             try:
                 if len(parts) != len(open_keys):
                     raise UsageError(Diagnostic(f'"{shown(text)}"', f'write e.g. "{offered}"'))
-                values |= starting.duty_answers(dict(zip(open_keys, parts, strict=True)), arm=arm)
+                values |= starting.start_answers(dict(zip(open_keys, parts, strict=True)), arm=arm)
                 break
             except UsageError as error:
                 streams.err(str(error.diagnostics[0]))
-    return starting.Duty(**values)  # type: ignore[arg-type]
+    return starting.StartAnswers(**values)  # type: ignore[arg-type]
 
 
 def _start_text(
@@ -336,7 +339,7 @@ def _start_text(
 ) -> str:
     """Text of a start file named by `title`: a design, or a scenario that `out` will contain."""
     from ..design import read_design
-    from ..design.cycle_reader import moved
+    from ..design.data_file import moved
     from ..design.kinds import ValueFault
     from ..design.scenario.reader import scenario_text
     from ..design.writer import init_text
@@ -391,31 +394,18 @@ TracesFile = Annotated[
 ]
 
 
+@with_common_options
 def evaluate(
     design: DesignFile,
-    sets: Set = None,
-    unset: Unset = None,
-    plugin: PluginFile = None,
     csv: TracesFile = None,
-    report: Report = False,
-    out: Out = REPORTS,
-    date: Date = None,
-    all_pages: AllPages = False,
-    format: Format = "pdf",
-    seed: Seed = 0,
-    as_json: Json = False,
-    quiet: Quiet = False,
     verbose: Verbose = False,
+    common: CommonOptions = COMMON,
 ) -> ExitCode:
     """Compute all metrics, requirements and checks of a design."""
     from .. import api as verbs
 
-    job = Job(
-        design, sets=sets, unset=unset, plugins=plugin, csv=csv, report=report, out=out, date=date,
-        all_pages=all_pages, format=format,
-        as_json=as_json, quiet=quiet, verbose=verbose,
-    )  # fmt: skip
-    return job.deliver(job.run(verbs.evaluate, seed=seed if report else None))
+    job = common.job(design, csv=csv, verbose=verbose)
+    return job.deliver(job.run(verbs.evaluate, seed=common.seed if common.report else None))
 
 
 def report(
@@ -500,37 +490,44 @@ def compare(
     return job.deliver(comparison, files=[{"path": str(path)} for path in paths])
 
 
+ExportedFile = Annotated[
+    str,
+    typer.Argument(
+        metavar="DESIGN",
+        help="Design file, or scenario that names its design (c or fmu), or - for stdin.",
+    ),
+]
+Formats = Annotated[
+    list[str] | None,
+    typer.Option("--format", metavar="step|dxf|xlsx|c|fmu", help="File format. Repeatable."),
+]
+ExportedScenario = Annotated[
+    str | None,
+    typer.Option(
+        "--scenario",
+        metavar="SCENARIO",
+        help="Write the equations of this scenario with the design instead (c or fmu).",
+    ),
+]
+ExportFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Output folder.")]
+ExportDate = Annotated[
+    str | None,
+    typer.Option(
+        "--date",
+        metavar="YYYY-MM-DD",
+        help="Date in the files; default: none, or SOURCE_DATE_EPOCH.",
+    ),
+]
+
+
 def export(
-    design: Annotated[
-        str,
-        typer.Argument(
-            metavar="DESIGN",
-            help="Design file, or scenario that names its design (c or fmu), or - for stdin.",
-        ),
-    ],
-    formats: Annotated[
-        list[str] | None,
-        typer.Option("--format", metavar="step|dxf|xlsx|c|fmu", help="File format. Repeatable."),
-    ] = None,
-    scenario: Annotated[
-        str | None,
-        typer.Option(
-            "--scenario",
-            metavar="SCENARIO",
-            help="Write the equations of this scenario with the design instead (c or fmu).",
-        ),
-    ] = None,
+    design: ExportedFile,
+    formats: Formats = None,
+    scenario: ExportedScenario = None,
     sets: Set = None,
     unset: Unset = None,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Output folder.")] = REPORTS,
-    date: Annotated[
-        str | None,
-        typer.Option(
-            "--date",
-            metavar="YYYY-MM-DD",
-            help="Date in the files; default: none, or SOURCE_DATE_EPOCH.",
-        ),
-    ] = None,
+    out: ExportFolder = REPORTS,
+    date: ExportDate = None,
     seed: Seed = 0,
     plugin: PluginFile = None,
     as_json: Json = False,

@@ -2,21 +2,35 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import shlex
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import field, replace
+from dataclasses import field, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
 from ..base import files as store
 from ..base.dataclass import dataclass
 from ..base.errors import ActuatorError, Diagnostic, ExitCode
 from . import streams
-from .options import REPORTS
+from .options import (
+    REPORTS,
+    AllPages,
+    Date,
+    Format,
+    Json,
+    Out,
+    PluginFile,
+    Quiet,
+    Report,
+    Seed,
+    Set,
+    Unset,
+)
 
 if TYPE_CHECKING:
     from ..api import Actuator
@@ -250,3 +264,56 @@ def command_line() -> str:
         elif word not in _SILENT and word.partition("=")[0] not in _TARGETS:
             words.append(word)
     return shlex.join(words)
+
+
+@dataclass
+class CommonOptions:
+    """Options of every command that computes a result of a design and may write its report."""
+
+    sets: Set = None
+    unset: Unset = None
+    plugin: PluginFile = None
+    report: Report = False
+    out: Out = REPORTS
+    date: Date = None
+    all_pages: AllPages = False
+    format: Format = "pdf"
+    seed: Seed = 0
+    as_json: Json = False
+    quiet: Quiet = False
+
+    def job(self, design: str, others: Sequence[str] = (), **more: Any) -> Job:
+        """The job of a command with these options; `more` as for `Job`."""
+        names = (option.name for option in fields(self))
+        options: dict[str, Any] = {name: getattr(self, name) for name in names}
+        options["plugins"] = options.pop("plugin")
+        del options["seed"]
+        return Job(design, others, **options | more)
+
+
+COMMON = CommonOptions()
+
+
+def with_common_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
+    """The command with the single options in place of its parameter `common`."""
+    signature = inspect.signature(command, eval_str=True)
+    kinds = get_type_hints(CommonOptions, include_extras=True)
+    options = [
+        signature.parameters["common"].replace(
+            name=option.name, default=option.default, annotation=kinds[option.name]
+        )
+        for option in fields(CommonOptions)
+    ]
+    parameters = list(signature.parameters.values())
+    at = [parameter.name for parameter in parameters].index("common")
+    parameters[at : at + 1] = options
+
+    def expanded(**given: Any) -> ExitCode:
+        common = CommonOptions(**{option.name: given.pop(option.name) for option in options})
+        return command(**given, common=common)
+
+    expanded.__name__, expanded.__doc__ = command.__name__, command.__doc__
+    expanded.__module__, expanded.__qualname__ = command.__module__, command.__qualname__
+    expanded.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    expanded.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
+    return expanded

@@ -10,7 +10,7 @@ import typer
 from ..base.bounds import CHECKS
 from ..base.errors import Diagnostic, ExitCode
 from . import completion
-from .job import Job
+from .job import COMMON, CommonOptions, Job, with_common_options
 from .options import (
     REPORTS,
     Algorithm,
@@ -24,7 +24,6 @@ from .options import (
     Out,
     PluginFile,
     Quiet,
-    Report,
     Scheduler,
     Seconds,
     Seed,
@@ -45,6 +44,20 @@ if TYPE_CHECKING:
     from ..optimisation.result import Optimisation
 
 
+RelaxSafety = Annotated[
+    bool, typer.Option("--relax-safety", help="If nothing fits, offer lower safety factors, too.")
+]
+ChoiceScheduler = Annotated[
+    str | None,
+    typer.Option(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="Solve combinations of choices on this Dask cluster.",
+    ),
+]
+ReportToo = Annotated[bool, typer.Option("--report", help="Write the report even with --json.")]
+
+
 def optimise(
     design: DesignFile,
     sets: Set = None,
@@ -57,24 +70,12 @@ def optimise(
     certify: Certify = False,
     target: Yield = None,
     verify: VerifyDynamics = None,
-    relax_safety: Annotated[
-        bool,
-        typer.Option("--relax-safety", help="If nothing fits, offer lower safety factors, too."),
-    ] = False,
+    relax_safety: RelaxSafety = False,
     seconds: Seconds = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(
-            "--scheduler",
-            metavar="ADDRESS",
-            help="Solve combinations of choices on this Dask cluster.",
-        ),
-    ] = None,
+    scheduler: ChoiceScheduler = None,
     write: Write = None,
     out: Out = REPORTS,
-    report: Annotated[
-        bool, typer.Option("--report", help="Write the report even with --json.")
-    ] = False,
+    report: ReportToo = False,
     date: Date = None,
     all_pages: AllPages = False,
     format: Format = "pdf",
@@ -147,31 +148,19 @@ def _unsaved(result: Optimisation, write: Path) -> Diagnostic | None:
     return Diagnostic(f"not written, no design to save: {reason}", file=str(write))
 
 
+@with_common_options
 def sensitivity(
     design: DesignFile,
-    sets: Set = None,
-    unset: Unset = None,
-    plugin: PluginFile = None,
-    report: Report = False,
-    out: Out = REPORTS,
-    date: Date = None,
-    all_pages: AllPages = False,
-    format: Format = "pdf",
-    seed: Seed = 0,
-    as_json: Json = False,
-    quiet: Quiet = False,
+    common: CommonOptions = COMMON,
 ) -> ExitCode:
     """Show what each requirement and parameter costs."""
     from .. import api as verbs
 
-    job = Job(
-        design, sets=sets, unset=unset, plugins=plugin, report=report, out=out, date=date,
-        all_pages=all_pages, format=format,
-        as_json=as_json, quiet=quiet,
-    )  # fmt: skip
-    return job.deliver(verbs.Prices(job.run(verbs.optimise, seed=seed)))
+    job = common.job(design)
+    return job.deliver(verbs.Prices(job.run(verbs.optimise, seed=common.seed)))
 
 
+@with_common_options
 def pareto(
     design: DesignFile,
     objectives: Annotated[
@@ -198,30 +187,16 @@ def pareto(
     csv: Annotated[
         Path | None, typer.Option("--csv", metavar="FILE", help="Save the designs of the front.")
     ] = None,
-    sets: Set = None,
-    unset: Unset = None,
-    plugin: PluginFile = None,
-    report: Report = False,
-    out: Out = REPORTS,
-    date: Date = None,
-    all_pages: AllPages = False,
-    format: Format = "pdf",
-    seed: Seed = 0,
     no_record: NoRecord = False,
-    as_json: Json = False,
-    quiet: Quiet = False,
+    common: CommonOptions = COMMON,
 ) -> ExitCode:
     """Pareto front of two to four objectives, and its knee."""
     from .. import api as verbs
 
-    job = Job(
-        design, sets=sets, unset=unset, plugins=plugin, csv=csv, report=report, out=out, date=date,
-        all_pages=all_pages, format=format,
-        as_json=as_json, quiet=quiet, record=not no_record,
-    )  # fmt: skip
+    job = common.job(design, csv=csv, record=not no_record)
     return job.deliver(
         job.run(
-            verbs.pareto, objectives=objectives or [], n=n, seed=seed, checks=checks,
+            verbs.pareto, objectives=objectives or [], n=n, seed=common.seed, checks=checks,
             scheduler=scheduler,
         )
     )  # fmt: skip

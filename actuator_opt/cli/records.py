@@ -10,21 +10,9 @@ import typer
 
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from ..base.quantities import RECORDS
-from .job import Job
+from .job import COMMON, CommonOptions, with_common_options
 from .options import (
-    REPORTS,
-    AllPages,
-    Date,
-    Format,
-    Json,
-    Out,
-    PluginFile,
-    Quiet,
-    Report,
-    Seed,
-    Set,
     Units,
-    Unset,
     file_of_units,
     named_columns,
     quantity_of,
@@ -136,6 +124,7 @@ Search = Annotated[
 ]
 
 
+@with_common_options
 def identify(
     record: RecordFile,
     design: Tested,
@@ -151,26 +140,12 @@ def identify(
     csv: Series = None,
     span: Span = None,
     part: BentPart = None,
-    sets: Set = None,
-    unset: Unset = None,
-    plugin: PluginFile = None,
-    report: Report = False,
-    out: Out = REPORTS,
-    date: Date = None,
-    all_pages: AllPages = False,
-    format: Format = "pdf",
-    seed: Seed = 0,
-    as_json: Json = False,
-    quiet: Quiet = False,
+    common: CommonOptions = COMMON,
 ) -> ExitCode:
     """Identify friction and damping from a test record."""
     from .. import api as verbs
 
-    job = Job(
-        design, [record, *file_of_units(units)], sets=sets, unset=unset, plugins=plugin, csv=csv,
-        report=report, out=out, date=date, all_pages=all_pages, format=format,
-        as_json=as_json, quiet=quiet,
-    )  # fmt: skip
+    job = common.job(design, [record, *file_of_units(units)], csv=csv)
     _check_bootstrap(bootstrap)
     reading: dict[str, Any] = {"columns": named_columns(columns), "units": units}
     length = quantity_of("--span", span, RECORDS["span"])
@@ -178,9 +153,9 @@ def identify(
     if length is None:
         if part is not None:
             raise UsageError(Diagnostic("--part: only with --span", "add --span, or remove --part"))
-        settings |= {"bootstrap": bootstrap, "seed": seed, **reading}
+        settings |= {"bootstrap": bootstrap, "seed": common.seed, **reading}
         return job.deliver(job.run(verbs.identify, record, design=job.actuator, **settings))
-    options = {"--report": report or None, "--csv": csv, "--bootstrap": bootstrap or None}
+    options = {"--report": common.report or None, "--csv": csv, "--bootstrap": bootstrap or None}
     _only_bending(options | {_OPTIONS[name]: value for name, value in settings.items()})
     if part not in (None, "rod", "barrel"):
         raise UsageError(Diagnostic(f'--part "{part}"', "write rod or barrel"))
@@ -188,6 +163,7 @@ def identify(
     return job.deliver(job.run(verbs.bending, record, design=job.actuator, **reading))
 
 
+@with_common_options
 def calibrate(
     record: RecordFile,
     design: Tested,
@@ -202,26 +178,12 @@ def calibrate(
     pressure_lag: PressureLag = None,
     bootstrap: Bootstrap = 0,
     search: Search = True,
-    sets: Set = None,
-    unset: Unset = None,
-    plugin: PluginFile = None,
-    report: Report = False,
-    out: Out = REPORTS,
-    date: Date = None,
-    all_pages: AllPages = False,
-    format: Format = "pdf",
-    seed: Seed = 0,
-    as_json: Json = False,
-    quiet: Quiet = False,
+    common: CommonOptions = COMMON,
 ) -> ExitCode:
     """Update a design with the friction measured in a test."""
     from .. import api as verbs
 
-    job = Job(
-        design, [record, *file_of_units(units)], sets=sets, unset=unset, plugins=plugin,
-        write=write, report=report, out=out, date=date, all_pages=all_pages, format=format,
-        as_json=as_json, quiet=quiet,
-    )  # fmt: skip
+    job = common.job(design, [record, *file_of_units(units)], write=write)
     _check_bootstrap(bootstrap)
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
     calibrated = job.run(
@@ -232,7 +194,7 @@ def calibrate(
         units=units,
         search=search,
         bootstrap=bootstrap,
-        seed=seed,
+        seed=common.seed,
         **settings,
     )
     saved = [] if write is None else [{"path": str(verbs.save(calibrated.actuator, write))}]

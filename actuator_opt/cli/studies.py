@@ -10,7 +10,7 @@ import typer
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from ..base.files import require_apart
 from ..base.quantities import INPUTS
-from .job import Job
+from .job import COMMON, CommonOptions, Job, with_common_options
 from .options import (
     REPORTS,
     AllPages,
@@ -19,11 +19,9 @@ from .options import (
     Format,
     Json,
     Out,
-    PluginFile,
     Quiet,
     Report,
     Scheduler,
-    Seed,
     Set,
     Units,
     Unset,
@@ -71,6 +69,7 @@ Metrics = Annotated[
 ]
 
 
+@with_common_options
 def uncertainty(
     design: DesignFile,
     count: Draws = 10_000,
@@ -84,30 +83,16 @@ def uncertainty(
             "--csv", metavar="FILE", help="Save inputs, margins and verdict of every draw."
         ),
     ] = None,
-    sets: Set = None,
-    unset: Unset = None,
-    plugin: PluginFile = None,
-    report: Report = False,
-    out: Out = REPORTS,
-    date: Date = None,
-    all_pages: AllPages = False,
-    format: Format = "pdf",
-    seed: Seed = 0,
-    as_json: Json = False,
-    quiet: Quiet = False,
+    common: CommonOptions = COMMON,
 ) -> ExitCode:
     """Production yield under scatter, Sobol indices, tornado."""
     from .. import api as verbs
 
-    job = Job(
-        design, sets=sets, unset=unset, plugins=plugin, csv=csv, report=report, out=out, date=date,
-        all_pages=all_pages, format=format,
-        as_json=as_json, quiet=quiet,
-    )  # fmt: skip
+    job = common.job(design, csv=csv)
     study = job.run(
         verbs.uncertainty,
         count=count,
-        seed=seed,
+        seed=common.seed,
         quasi_random=quasi,
         rows=rows,
         metrics=metric or [],
@@ -159,6 +144,7 @@ ContactDesign = Annotated[
 ]
 
 
+@with_common_options
 def seal(
     design: DesignFile,
     place: SealPlace,
@@ -167,35 +153,23 @@ def seal(
     mapped: Mapped = False,
     finite_elements: FiniteElements = False,
     write: ContactDesign = None,
-    sets: Set = None,
-    unset: Unset = None,
-    plugin: PluginFile = None,
-    report: Report = False,
-    out: Out = REPORTS,
-    date: Date = None,
-    all_pages: AllPages = False,
-    format: Format = "pdf",
-    seed: Seed = 0,
-    as_json: Json = False,
-    quiet: Quiet = False,
+    common: CommonOptions = COMMON,
 ) -> ExitCode:
     """Analyse contact, oil film, friction and leakage of a seal."""
     from .. import api as verbs
 
     if place not in ("piston", "rod"):
         raise UsageError(Diagnostic(f'--seal "{place}"', "write piston or rod"))
-    job = Job(
-        design, sets=sets, unset=unset, plugins=plugin, write=write,
-        report=report or mapped, out=out, date=date, all_pages=all_pages, format=format,
-        as_json=as_json, quiet=quiet, paper={"sheet": report},
-    )  # fmt: skip
+    job = common.job(
+        design, write=write, report=common.report or mapped, paper={"sheet": common.report}
+    )
     study = job.run(
         verbs.seal,
         place=place,
         speed=quantity_of("--speed", speed, INPUTS["speed"]),
         pressure=quantity_of("--pressure", pressure, INPUTS["pressure"]),
         mapped=mapped,
-        curves=report,
+        curves=common.report,
         finite_elements=finite_elements,
     )
     if write is not None:

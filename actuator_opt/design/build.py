@@ -14,7 +14,7 @@ from ..base.errors import Diagnostic, Fault, InputError
 from ..base.quantities import Quantity
 from ..metrics import METRICS
 from . import choice_list, requirements
-from .cycle_reader import attach, folder_of
+from .data_file_reader import attach, folder_of
 from .faults import cross_field, material_faults
 from .kinds import Fraction, Section, ValueFault, shape_in_words
 from .model import Design, Ply

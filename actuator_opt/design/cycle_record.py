@@ -18,10 +18,9 @@ import numpy as np
 from ..base import units
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, remedy as remedy_for, shown
-from ..base.files import read_bytes
 from ..base.numeric import Array
 from ..base.quantities import INPUTS
-from ..base.sheets import Sheet, converted, decode_sheet, header_cells, numbers, read_sheet
+from ..base.sheets import Sheet, converted, header_cells, numbers, read_sheet, read_text
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -257,14 +256,8 @@ def read_cycle(
     """
     if isinstance(source, str) and "\n" in source:
         return parse_cycle(source, "text", closed=closed, ignore=ignore, samples=samples)
-    text = cycle_text(Path(source))
+    text = read_text(source, most=MOST_BYTES)
     return parse_cycle(text, str(source), closed=closed, ignore=ignore, samples=samples)
-
-
-def cycle_text(path: Path) -> str:
-    """The text of a cycle's file; at most `MOST_BYTES` are read. Raises `InputError`."""
-    data = read_bytes(path, most=MOST_BYTES + 1, kinds=(".csv", ".txt"), what="CSV file")
-    return decode_sheet(data, str(path))
 
 
 def parse_cycle(
@@ -278,7 +271,7 @@ def parse_cycle(
     """The record in the text of a CSV file called `name`; see `read_cycle`."""
     sheet = read_sheet(_bounded(text, name), name)
     columns, lines = _columns(sheet, ignore)
-    _check(sheet, columns, lines, complete=len(text) <= MOST_BYTES)
+    _check(sheet, columns, lines)
     record = _record(sheet, columns, lines, closed=closed)
     return record if samples is None else record.resampled(samples)
 
@@ -371,7 +364,7 @@ def _pair_faults(sheet: Sheet, places: Mapping[str, object]) -> Iterator[Diagnos
             yield fault(f"column {speed} does not suit {pair[0]}", f"name it {right}, or remove it")
 
 
-def _check(sheet: Sheet, columns: Mapping[str, Array], lines: Array, *, complete: bool) -> None:
+def _check(sheet: Sheet, columns: Mapping[str, Array], lines: Array) -> None:
     """Refuse too few or too many samples, missing cells, values out of range, falling times."""
 
     def refuse(message: str, remedy: str, sample: int | None = None) -> InputError:
@@ -382,9 +375,6 @@ def _check(sheet: Sheet, columns: Mapping[str, Array], lines: Array, *, complete
         raise refuse(f"more than {MOST} samples", "resample the cycle to fewer samples")
     if len(sheet.lines) >= MOST + OTHER_LINES:
         raise refuse(f"more than {MOST + OTHER_LINES - 1} lines", "remove comments and empty lines")
-    if not complete:
-        remedy = "leave out unneeded columns and digits"
-        raise refuse(f"the file is larger than {MOST_BYTES / 1e6:.0f} MB", remedy)
     if lines.size < FEWEST:
         message = f"{lines.size} samples: a cycle needs at least {FEWEST}"
         raise refuse(message, "give one line per sample")

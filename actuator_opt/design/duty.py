@@ -6,13 +6,13 @@ a PATH, such as ``duty.cycles[walk].torque_scale``.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import Field
 
-from ..base.errors import Diagnostic, InputError
-from .cycle_files import CycleFile, CycleFileName
-from .cycle_record import CycleRecord
+from .cycle_record import MOST_BYTES, CycleRecord, parse_cycle
+from .data_file import DataFile, DataFileName, as_read
 from .kinds import Boolean, CaseName, Choice, Label, Of, Section
 
 MOST_CYCLES = 50
@@ -25,6 +25,26 @@ ThermalBasis: TypeAlias = Annotated[
         "repeated without end; mean: all cycles, weighted by their time in a life"
     ),
 ]
+
+
+def cycle_of(
+    file: DataFile, *, closed: bool, ignore: tuple[str, ...] = (), samples: int | None = None
+) -> CycleRecord:
+    """The record in a file; for `DataFile.parsed`. Faults as for `read_cycle`."""
+    if samples is None:
+        return parse_cycle(file.text, file.place, closed=closed, ignore=ignore)
+    return file.parsed(cycle_of, closed=closed, ignore=ignore).resampled(samples)
+
+
+def _closed(cycle: Mapping[str, Any]) -> bool:
+    """Whether a cycle of a tree repeats; its value may still be a text."""
+    return str(cycle.get("closed", True)).strip().lower() not in ("false", "no", "off", "0")
+
+
+def _ignored(cycle: Mapping[str, Any]) -> tuple[str, ...]:
+    """The columns that a cycle of a tree ignores."""
+    names = cycle.get("ignore")
+    return tuple(map(str, names)) if isinstance(names, (list, tuple)) else ()
 
 
 class SharingActuator(Section):
@@ -43,10 +63,14 @@ class DutyCycle(Section):
     name: Annotated[str, CaseName("name of the cycle in reports and PATHs")]
     file: Annotated[
         str,
-        CycleFileName(
+        DataFileName(
             "CSV file in the folder of the design, with columns such as time [s], joint_angle "
             "[deg], joint_torque [N*m]; or position [mm], force [N]; or its text of several lines",
             "walk.csv",
+            most=MOST_BYTES,
+            parse=lambda file, cycle: file.parsed(
+                cycle_of, closed=_closed(cycle), ignore=_ignored(cycle)
+            ),
         ),
     ]
     repeats: Annotated[
@@ -98,10 +122,10 @@ class DutyCycle(Section):
 
     def sampled(self, samples: int | None) -> CycleRecord:
         """The record with at least `samples` samples; None keeps those of the file."""
-        if not isinstance(self.file, CycleFile):
-            message = f"cycle {self.name}: its file was not read"
-            raise InputError(Diagnostic(message, "read the design from its file"))
-        return self.file.record(closed=self.closed, ignore=self.ignore, samples=samples)
+        file = as_read(self.file, f"cycle {self.name}")
+        if samples is None:
+            return file.parsed(cycle_of, closed=self.closed, ignore=self.ignore)
+        return file.parsed(cycle_of, closed=self.closed, ignore=self.ignore, samples=samples)
 
 
 class Tank(Section):

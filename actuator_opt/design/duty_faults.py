@@ -9,12 +9,13 @@ import numpy as np
 from ..base.errors import Fault, InputError, shown
 from ..base.quantities import INPUTS
 from ..models import linkage as crank
-from .cycle_files import CycleFile
-from .cycle_reader import CYCLES
 from .cycle_record import CycleRecord
-from .duty import DutyCycle
+from .data_file import DataFile
+from .duty import DutyCycle, cycle_of
 from .structure import FileView, Loc, child, entries, without_effect
 
+CYCLES: Loc = ("duty", "cycles")
+"""Location of the list of cycles in a design."""
 DEAD = 1e-3
 """Lever arm at a dead point, divided by the crank radius (our choice: force and speed are then off
 by a factor of a thousand)."""
@@ -24,10 +25,11 @@ def record_at(view: FileView, index: int) -> CycleRecord | None:
     """The record of a cycle; None if its file is not read or has faults of its own."""
     loc = (*CYCLES, index)
     file, closed = view.value(*loc, "file"), view.value(*loc, "closed")
-    if not isinstance(file, CycleFile) or not isinstance(closed, bool):
+    if not isinstance(file, DataFile) or not isinstance(closed, bool):
         return None
     try:
-        return file.record(closed=closed, ignore=tuple(map(str, view.items(*loc, "ignore"))))
+        ignored = tuple(map(str, view.items(*loc, "ignore")))
+        return file.parsed(cycle_of, closed=closed, ignore=ignored)
     except InputError:
         return None
 

@@ -16,11 +16,11 @@ from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, Fault, InputError
 from ..base.files import read_bytes
 from ..base.quantities import Quantity
-from . import flow_tables, layup
+from . import layup
 from .build import MOST_FAULTS, Root, build
 from .changes import Changed, Override, changed, meaningless
-from .cycle_files import CycleFile
-from .cycle_reader import attach
+from .data_file import DataFile
+from .data_file_reader import attach
 from .ideal import completed
 from .kinds import Section, ValueFault
 from .model import Design
@@ -121,7 +121,7 @@ def read_design(
     metrics: Mapping[str, Quantity] | None = None,
     files: Mapping[str, str] | None = None,
 ) -> LoadedDesign:
-    """Read a design file, or its text, and the files of duty cycles that it names.
+    """Read a design file, or its text, and the data files that it names.
 
     Parameters
     ----------
@@ -139,20 +139,17 @@ def read_design(
     """
     text, file = opened(source)
     folder = Path() if file in (TEXT, STDIN) else Path(source).parent
-    known = {name: CycleFile(name, text, str(folder)) for name, text in (files or {}).items()}
+    known = {name: DataFile(name, text, str(folder)) for name, text in (files or {}).items()}
     beside: list[Diagnostic] = []
     document = layup.expanded(parse(text, file))
 
     def build_design(tree: dict[str, Any]) -> tuple[Design | None, Sequence[Fault]]:
         lookup = library() if materials is None else materials
-        with_tables, unread = flow_tables.attached(tree, flow_tables.OF_DESIGN, document)
-        if unread:
-            return None, unread
-        whole, unused = completed(with_tables)
-        cycle_faults = list(attach(whole, folder, known))
-        beside[:] = [fault for fault in cycle_faults if isinstance(fault, Diagnostic)]
+        whole, unused = completed(tree)
+        file_faults = list(attach(whole, folder, known))
+        beside[:] = [fault for fault in file_faults if isinstance(fault, Diagnostic)]
         built = build(whole, materials=lookup, metrics=metrics)
-        faults = [*unused, *built.faults, *(x for x in cycle_faults if isinstance(x, Fault))]
+        faults = [*unused, *built.faults, *(x for x in file_faults if isinstance(x, Fault))]
         return (None if faults else built.design), faults
 
     return LoadedDesign(*load(document, Design, build_design, overrides, metrics, beside))

@@ -6,7 +6,8 @@ from pydantic import Field
 
 from ..models.orifice import TURBULENT_COEFFICIENT
 from . import choices
-from .flow_curve import FlowCurve, FlowTable
+from .data_file import DataFileName, as_read
+from .flow_curve import MOST_BYTES, FlowTable, flow_table
 from .kinds import Of, Section
 
 
@@ -99,10 +100,13 @@ class Valve(Section):
     ] = 35e5
     edge_coefficients: EdgeCoefficients | None = None
     flow_curve: Annotated[
-        FlowTable | None,
-        FlowCurve(
+        str | None,
+        DataFileName(
             "flow over signal at rated_drop, as CSV: a file in the folder of the design, or the "
-            "table itself; columns: signal [%] or [V]; q [l/min], or q_pa, q_pb, q_at and q_bt"
+            "table itself; columns: signal [%] or [V]; q [l/min], or q_pa, q_pb, q_at and q_bt",
+            "valve_curve.csv",
+            most=MOST_BYTES,
+            parse=lambda file, valve: file.parsed(flow_table),
         ),
     ] = None
     leakage_flow: Annotated[
@@ -167,3 +171,10 @@ class Valve(Section):
         ),
     ] = None
     spool: Spool | None = None
+
+    @property
+    def flow_table(self) -> FlowTable | None:
+        """The table of `flow_curve`; raises `InputError` if its file was not read."""
+        if self.flow_curve is None:
+            return None
+        return as_read(self.flow_curve, "valve.flow_curve").parsed(flow_table)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..base.errors import Fault
+from ..base.errors import Fault, InputError
 from ..base.quantities import INPUTS, length_text
 from ..models.valve import WIDEST
-from .flow_curve import EDGES, FlowTable, check_ends
+from .data_file import DataFile
+from .flow_curve import EDGES, check_ends, flow_table
 from .structure import FileView, Loc, how_to_add, section_at, without_effect
 
 LAPS = (
@@ -67,10 +68,15 @@ def _flow_curve(view: FileView, loc: Loc) -> Iterator[Fault]:
         return
     where = "with flow_curve, whose flow at the centre is the leakage"
     yield from without_effect(view, loc, COURSE, where)
-    table, full = view.value(*loc, "flow_curve"), view.number(*loc, "signal")
-    if isinstance(table, FlowTable) and full is not None:
-        for message, remedy in check_ends(table, full):
-            yield Fault((*loc, "flow_curve"), message, remedy)
+    file, full = view.value(*loc, "flow_curve"), view.number(*loc, "signal")
+    if not isinstance(file, DataFile) or full is None:
+        return
+    try:
+        table = file.parsed(flow_table)
+    except InputError:  # a fault of its own
+        return
+    for message, remedy in check_ends(table, full):
+        yield Fault((*loc, "flow_curve"), message, remedy)
 
 
 def _hysteresis(view: FileView, loc: Loc) -> Iterator[Fault]:

@@ -24,8 +24,6 @@ from ..seals.kinds import TYPES
 from . import layup
 from .build import build, to_tree
 from .choice_list import quantity_of_choice
-from .flow_curve import FlowTable
-from .flow_tables import self_contained
 from .kinds import Boolean, Fraction, Section, Text
 from .model import Design
 from .paths import resolve
@@ -90,7 +88,7 @@ def to_yaml(
 ) -> str:
     """Text of a design file; reading it gives `design` again, bit for bit.
 
-    A flow curve that the design reads from a file is written out.
+    Data files are named; see `data_file.moved` and `data_file.portable`.
 
     Parameters
     ----------
@@ -105,8 +103,7 @@ def to_yaml(
         if text:
             return text
     writer = _Leaves(design, metrics)
-    text = "\n".join(_lines(_stated(to_tree(design), Design, design), (), writer, "")) + "\n"
-    return self_contained(text, design)
+    return "\n".join(_lines(_stated(to_tree(design), Design, design), (), writer, "")) + "\n"
 
 
 _TABLES = (("variables",), ("requirements",), ("measured",), ("uncertainty",))
@@ -158,8 +155,6 @@ class _Leaves:
     def text(self, loc: Loc, value: Any, old: str | None = None) -> str:
         """YAML scalar of a value, in the unit of the text `old` that it replaces."""
         number = number_of(value)
-        if isinstance(value, FlowTable):
-            return scalar(value.stated)
         if number is None:
             return str(value).lower() if isinstance(value, bool) else scalar(value)
         unit = None
@@ -177,7 +172,7 @@ class _Leaves:
         if isinstance(value, bool):
             return Boolean.words.get(old.strip().lower()) == value
         if number is None:
-            return bool((value.stated if isinstance(value, FlowTable) else value) == old)
+            return bool(value == old)
         quantity = self.quantity(loc, value)
         if isinstance(value, Fraction) != ("%" in old) and loc[-1] == "position":
             return False
@@ -253,7 +248,6 @@ def _edited_text(design: Design, document: Document | None, metrics: Mapping[str
     """Replace values in the document's text by those of the design; empty if impossible."""
     try:
         text = "" if document is None else _edited(design, document, metrics)
-        text = self_contained(text, design) if text else ""
     except _CannotEdit:
         return ""
     return text if _reads_back(text, design, metrics) else ""
@@ -382,7 +376,7 @@ def _insertion(stated: dict[str, Any], loc: Loc, document: Document, writer: _Le
 
 
 _TEXT = """\
-# A hydraulic actuator: its design, duties, variables and requirements.
+# A hydraulic actuator: its design, load cases, variables and requirements.
 #
 # Every physical value has a unit (25 mm, 100 bar, 40 degC, 0.5 %); only 0, ratios and counts
 # may be bare. Every value has a PATH, e.g. cylinder.bore or barrel.layup[1].thickness, for --set

@@ -177,17 +177,11 @@ def _change(plies: Plies, beside: EdgeBeside, supply: Array) -> Stress:
 
 def _ply_change(layer: Layer, place: Array, beside: EdgeBeside, supply: Array) -> Iterator[Array]:
     """Change of sigma_1, sigma_2, sigma_3 and tau_12 of a ply per unit pressure."""
-    c = layer.constants
     axial, hoop = end_bending.strain_changes(
         place=place, wall=beside.wall, edge=beside.edge, growth=beside.growth
     )
     first, second, shear = ply.ply_stresses(
-        stiffness=ply.ply_stiffness(
-            youngs_modulus_1=c["youngs_modulus_1"],
-            youngs_modulus_2=c["youngs_modulus_2"],
-            poissons_ratio_12=c["poissons_ratio_12"],
-            shear_modulus_12=c["shear_modulus_12"],
-        ),
+        stiffness=layer.plane_stiffness,
         angle=layer.angle,
         axial_strain=axial / supply,
         hoop_strain=hoop / supply,

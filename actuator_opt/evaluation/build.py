@@ -21,6 +21,7 @@ from ..base.dataclass import dataclass
 from ..base.errors import InputError
 from ..base.numeric import Array, namespace, sorted_unique, where
 from ..design import paths, standard_sizes as standards
+from ..design.data_file_reader import replace_by_digests
 from ..design.housings import gland_deviations, housings, housings_for
 from ..design.material import Material
 from ..design.materials import Library, load_library
@@ -251,18 +252,12 @@ def leave_out_unset(valve: dict[str, Any] | None) -> None:
     ):
         if valve and valve[key] is None:
             del valve[key]
-    if valve and "flow_curve" in valve:  # its numbers count, not the name of its file
-        table = valve["flow_curve"]
-        valve["flow_curve"] = {name: table[name] for name in ("in_volts", "signal", "flows")}
 
 
 def spec_hash(subject: PreparedDesign) -> str:
     """Hash of all inputs that determine the result: design, material data and program version."""
     design = subject.design.model_dump(mode="json")
-    if subject.design.duty is not None:  # the content of a cycle's file counts, not its name
-        cycles = zip(design["duty"]["cycles"], subject.design.duty.cycles, strict=True)
-        for cycle, stated in cycles:
-            cycle["file"] = stated.record.digest
+    replace_by_digests(design, subject.design)
     for key in ("uncertainty", "extra_masses", "sensor", "cushion", "duty"):
         if not design[key]:  # unset fields are left out: hashes of older designs stay valid
             del design[key]

@@ -19,7 +19,7 @@ from ..base.quantities import Quantity, Sense
 from ..base.tables import Displayed
 from ..design import Design
 from ..design.build import to_tree
-from ..design.flow_curve import FlowTable
+from ..design.data_file import DataFile
 from ..design.kinds import Fraction
 from ..design.paths import NAMED_LISTS, quantity_of
 from ..design.structure import child_at
@@ -32,7 +32,7 @@ SAME = 1e-9
 """Relative difference up to which two numbers count as equal. Our choice, above rounding errors."""
 _IDLE = ("name", "notes")
 """Keys of a design that do not affect its results."""
-_DUTY = ("supply", "load", "load_cases", "duty", "fluid", "environment", "linkage")
+_CONDITIONS = ("supply", "load", "load_cases", "duty", "fluid", "environment", "linkage")
 """Blocks of a design that state what it must do."""
 _MADE = ("environment.cure_temperature",)
 """PATHs in these blocks that state how the actuator is made."""
@@ -138,10 +138,10 @@ class Comparison(Displayed):
         return {name: senses for name, senses in by_metric.items() if {"min", "max"} <= {*senses}}
 
     @property
-    def duties_differ(self) -> tuple[str, ...]:
-        """PATHs of differing inputs that state the duty, such as supply, load and environment."""
+    def differing_conditions(self) -> tuple[str, ...]:
+        """PATHs of differing inputs that state load cases, duty cycles and operating conditions."""
         roots = ((c.path, c.path.partition(".")[0].partition("[")[0]) for c in self.changes)
-        return tuple(path for path, root in roots if root in _DUTY and path not in _MADE)
+        return tuple(path for path, root in roots if root in _CONDITIONS and path not in _MADE)
 
     def limits(self) -> Iterator[tuple[str, str, tuple[Any, ...]]]:
         """Yield name, sense and results of every requirement.
@@ -354,8 +354,8 @@ def _value(node: Any) -> Value:
     """Return a plain value unchanged, and the word "given" for a block."""
     if node is _MISSING or node == {} or node == []:
         return None
-    if isinstance(node, FlowTable):
-        return str(node)
+    if isinstance(node, DataFile):
+        return node.label
     if isinstance(node, dict):
         stated = node.get("material")
         return stated if isinstance(stated, str) else "given"

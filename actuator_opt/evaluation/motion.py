@@ -352,7 +352,7 @@ def _dead_band_text(lost: float) -> str:
 
 def _curves(valve: Valve) -> Iterable[tuple[str, str]]:
     """Warn of edges that differ, and of a dead band, of a valve with curves or coefficients."""
-    coefficients, table = valve.edge_coefficients, valve.flow_curve
+    coefficients, table = valve.edge_coefficients, valve.flow_table
     different = coefficients is not None and len(set(dict(coefficients).values())) > 1
     if table is not None:
         edges = [table.points(key, valve.signal) for key in EDGES.values()]

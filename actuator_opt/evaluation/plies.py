@@ -16,6 +16,7 @@ from ..base.numeric import Array, maximum, real
 from ..design.model import Design, Ply
 from ..models.burst_ladder import WallLayer
 from ..models.layered_tube import TubeLayer
+from ..models.ply import Stiffness, ply_stiffness
 from ..models.solid_ply import Solid, solid_stiffness
 from ..models.strength import CRITERIA
 from ..models.strength_modes import PlyRatios, PlyStrength, Stress
@@ -43,6 +44,16 @@ class Climate:
     name: str
     change: Array
     cold: bool
+
+
+def plane_stiffness(constants: Mapping[str, Array]) -> Stiffness:
+    """Reduced stiffness of a ply with these elastic constants, in plane stress."""
+    return ply_stiffness(
+        youngs_modulus_1=constants["youngs_modulus_1"],
+        youngs_modulus_2=constants["youngs_modulus_2"],
+        poissons_ratio_12=constants["poissons_ratio_12"],
+        shear_modulus_12=constants["shear_modulus_12"],
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +92,11 @@ class Layer:
         first = self.constants.get("thermal_expansion_1")
         second = self.constants.get("thermal_expansion_2")
         return None if first is None or second is None else (first, second)
+
+    @property
+    def plane_stiffness(self) -> Stiffness:
+        """Reduced stiffness in plane stress, along and across the fibre."""
+        return plane_stiffness(self.constants)
 
     def as_tube(self) -> TubeLayer:
         """The layer as input of the exact model of a layered tube."""

@@ -50,6 +50,13 @@ def without_reserve(margin: float | None, limit: float | None) -> bool:
     return margin is not None and margin < (NO_RESERVE if limit else NO_ROOM)
 
 
+def state_of(met: bool, margin: float | None, limit: float | None) -> State:
+    """State of a checked limit: missed, met, or met without reserve."""
+    if not met:
+        return "missed"
+    return "no_reserve" if without_reserve(margin, limit) else "met"
+
+
 def count_words(count: int) -> str:
     """Number of limits without reserve, in words.
 
@@ -298,9 +305,7 @@ class Requirement:
     @property
     def state(self) -> State:
         """Whether the requirement is met, and with a reserve (a margin of `NO_RESERVE`)."""
-        if not self.met:
-            return "missed"
-        return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
+        return state_of(self.met, self.margin, self.limit)
 
 
 @dataclass(frozen=True, slots=True)
@@ -325,7 +330,7 @@ class Check:
         """Status of the check; if met, whether with a reserve (a margin of `NO_RESERVE`)."""
         if self.status != "met":
             return self.status
-        return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
+        return state_of(True, self.margin, self.limit)
 
     @property
     def advice(self) -> bool:

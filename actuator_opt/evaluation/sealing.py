@@ -60,24 +60,8 @@ def compute(
     moving = np.atleast_2d(real(state.speed))[:, 0] > 0
     for ring in rings:
         grown = seal_growths if ring.name == "piston" else {OWN: 0.0}
-        contact = seal_contact(_at_interseal_pressure(ring, films))
         gland_rows = gland_metrics(v, design, stock, geometry, state, ring, grown)
-        rows = {
-            "contact_width": contact.width,
-            "contact_pressure": contact.peak,
-            "seal_wear": wear.sliding_severity(
-                line_load=contact.line_load,
-                contact_width=contact.width,
-                distance=2 * geometry.stroke,
-            ),
-        }
-        law, film = ring.element.friction_law, films.get(ring.label)
-        if law.film is None:
-            ring_friction = law.friction(ring.sizes, contact, row_load(ring, contact), state.speed)
-        else:
-            ring_friction = law.film(ring.sizes, contact, film)
-        if film is not None:
-            rows["film_thickness"] = film.thickness
+        rows, ring_friction = _contact_rows(ring, films, geometry.stroke, state.speed)
         total = total + ring_friction
         out.friction_parts[ring.label] = ring_friction.running
         for metric, value in rows.items():
@@ -108,6 +92,26 @@ def compute(
     if not moving.any():
         out.skip("damping_seal", "no load case has a speed: add load_cases[NAME].speed")
     return total
+
+
+def _contact_rows(
+    ring: Ring, films: Films, stroke: Array, speed: Array
+) -> tuple[dict[str, Array], Friction]:
+    """Contact metrics and friction of a sliding ring."""
+    contact = seal_contact(_at_interseal_pressure(ring, films))
+    rows = {
+        "contact_width": contact.width,
+        "contact_pressure": contact.peak,
+        "seal_wear": wear.sliding_severity(
+            line_load=contact.line_load, contact_width=contact.width, distance=2 * stroke
+        ),
+    }
+    law, film = ring.element.friction_law, films.get(ring.label)
+    if film is not None:
+        rows["film_thickness"] = film.thickness
+    if law.film is None:
+        return rows, law.friction(ring.sizes, contact, row_load(ring, contact), speed)
+    return rows, law.film(ring.sizes, contact, film)
 
 
 Films = Mapping[str, Running]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from ..base.numeric import Array, maximum, where
 from ..design.model import Design
@@ -83,7 +83,30 @@ def _endurance(
         fatigue = end.joint.fatigue(end.loaded)
         loads += [(end.end_joint.placed(place), *load) for place, *load in fatigue.pulsed]
         lives |= end.placed(fatigue.lives)
-    life, factor, unknown = {}, {}, {}
+    life, factor, unknown = _pulsed_lives(stock, loads)
+    for place, known in lives.items():
+        life[place], factor[place] = known
+    missing = ", ".join(dict.fromkeys(unknown.values()))
+    for metric, values in (("cycle_life", life), ("fatigue_factor", factor)):
+        if values:
+            out.put(metric, values)
+        else:
+            out.skip(metric, f"fatigue strength is unknown for {missing}")
+    if life and unknown:
+        parts = ", ".join(f"{place} ({name})" for place, name in unknown.items())
+        out.left_out.append(f"pressure-cycle life leaves out {parts}: fatigue strength unknown")
+
+
+def _pulsed_lives(
+    stock: MaterialValues, loads: Iterable[tuple[str, str, Array, Array]]
+) -> tuple[dict[str, Array], dict[str, Array], dict[str, str]]:
+    """Lives and fatigue factors under pulsating stress, and materials without data, by place.
+
+    `loads` are place, material, span and mean of the stress.
+    """
+    life: dict[str, Array] = {}
+    factor: dict[str, Array] = {}
+    unknown: dict[str, str] = {}
     for place, name, span, mean in loads:
         ultimate = stock.allowable(name, "ultimate_strength")
         limit = stock.allowable(name, "fatigue_strength")
@@ -106,19 +129,7 @@ def _endurance(
             amplitude_strength=limit,
             stress_ratio=ratio,
         )
-    for place, known in lives.items():
-        life[place], factor[place] = known
-    for metric, values in (("cycle_life", life), ("fatigue_factor", factor)):
-        if values:
-            out.put(metric, values)
-        else:
-            out.skip(
-                metric,
-                f"fatigue strength is unknown for {', '.join(dict.fromkeys(unknown.values()))}",
-            )
-    if life and unknown:
-        parts = ", ".join(f"{place} ({name})" for place, name in unknown.items())
-        out.left_out.append(f"pressure-cycle life leaves out {parts}: fatigue strength unknown")
+    return life, factor, unknown
 
 
 def _end_stop(

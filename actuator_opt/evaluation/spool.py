@@ -111,11 +111,11 @@ def metering_spool(
     if stated.spool is not None and stated.spool.type == "lapped":
         return _lapped(read, stated, density, kinematic_viscosity)
     edges: dict[str, CurveEdge] = {}
-    if stated.flow_curve is not None:
+    if (table := stated.flow_table) is not None:
         root = models.edge_coefficient(flow=1.0, pressure_drop=read("rated_drop"))
         factor = _in_oil(read, root, kinematic_viscosity)
         for name, key in EDGES.items():
-            points = stated.flow_curve.points(key, stated.signal)
+            points = table.points(key, stated.signal)
             edges[name] = CurveEdge(MeteringCurve.through(*points), factor)
     elif stated.edge_coefficients is not None:
         supply, tank = _leakages(read)

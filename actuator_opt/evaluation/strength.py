@@ -71,12 +71,7 @@ def _shell_layer(
 ) -> ShellLayer:
     """Stiffness of a layer of the barrel against bending; `at` is its PATH."""
     c = stock.ply_constants(entry.material)
-    stiffness = ply.ply_stiffness(
-        youngs_modulus_1=c["youngs_modulus_1"],
-        youngs_modulus_2=c["youngs_modulus_2"],
-        poissons_ratio_12=c["poissons_ratio_12"],
-        shear_modulus_12=c["shear_modulus_12"],
-    )
+    stiffness = plies.plane_stiffness(c)
     if stock.material(entry.material).isotropic:
         along, both, _, modulus = stiffness
         return ShellLayer(thickness, along, along, both, modulus)

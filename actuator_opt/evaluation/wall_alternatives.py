@@ -199,14 +199,7 @@ def settling(layers: Sequence[Layer], g: Geometry) -> Settling:
     """Decay length of the wall as a thin shell, and bore growth near the pressure step."""
     stiffnesses = []
     for layer in layers:
-        c = layer.constants
-        stiffness = ply.ply_stiffness(
-            youngs_modulus_1=c["youngs_modulus_1"],
-            youngs_modulus_2=c["youngs_modulus_2"],
-            poissons_ratio_12=c["poissons_ratio_12"],
-            shear_modulus_12=c["shear_modulus_12"],
-        )
-        stiffnesses.append(ply.rotated(stiffness=stiffness, angle=layer.angle))
+        stiffnesses.append(ply.rotated(stiffness=layer.plane_stiffness, angle=layer.angle))
     layer_thicknesses = [layer.thickness for layer in layers]
     axial, cross, hoop = laminate.membrane(plies=stiffnesses, thicknesses=layer_thicknesses)
     middle = (g.inner_radius + g.outer_radius) / 2
@@ -238,9 +231,9 @@ def metal_tubes(
     densities: Sequence[float],
     run: ModelRun,
 ) -> tuple[MetalBarrel, ...]:
-    """The wall of the design, and the thinnest barrel for the same duty from each of `METALS`.
+    """The wall of the design, and the thinnest barrel for the same limits from each of `METALS`.
 
-    The duty is the bore growth of the design's wall without axial force, and the required burst
+    The limits are the bore growth of the design's wall without axial force, and the required burst
     pressure, which a wall must reach without and with axial force. If the design's wall has a lower
     burst pressure, or if the burst check is waived, its burst pressure is the requirement.
     """

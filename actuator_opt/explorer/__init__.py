@@ -26,7 +26,7 @@ from ..base.tables import encoded
 from ..design.paths import quantity_of
 from ..evaluation import prepare
 from ..evaluation.limits import MetricLimit
-from ..evaluation.outline import LENGTHS, Template
+from ..evaluation.outline_templates import LENGTHS, Template
 from ..evaluation.plugin import Plugin, with_own
 from ..evaluation.result import NO_RESERVE, NO_ROOM, Outline
 from ..rendering.text import SENSES, limit_text, pretty, unit_text

@@ -8,7 +8,8 @@ import numpy as np
 
 from ..base.errors import Diagnostic, InputError
 from ..base.symbolic import program as programs
-from ..base.symbolic.expression import Expression, Symbol, jacobian, needed
+from ..base.symbolic.derivative import jacobian
+from ..base.symbolic.expression import Expression, Symbol, needed
 from ..base.symbolic.program import Program
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import Scenario

@@ -36,7 +36,8 @@ from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import Array
 from ..base.quantities import INPUTS as DESIGNS, SCENARIOS, Quantity
-from ..base.symbolic.expression import Expression, Symbol, jacobian, needed
+from ..base.symbolic.derivative import jacobian
+from ..base.symbolic.expression import Expression, Symbol, needed
 from ..base.symbolic.program import Program
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import SAMPLES, Scenario

@@ -470,45 +470,21 @@ def tapered_lap(
     >>> print(f"{edges.at_tip / 1e6:.3f} {edges.at_tube / 1e6:.3f}")
     11.361 14.907
     """
-    lag, step = shear_modulus / bond_thickness, 1 / CELLS
+    lag = shear_modulus / bond_thickness
     supply = lag * (line_force / tube_stiffness + strain_difference)
     root = sqrt(positive(tip))
     rise, scale = 1 - root, 2 * taper_length / (1 + root)  # x_t = scale * kappa
     square = scale * scale
-    thickness = [root + rise * (i * step) for i in range(CELLS + 1)]  # kappa
-    curve, load = [], []  # phi'' = curve phi - load
-    for kappa in thickness:
+    curve, load = [], []
+    for kappa in (root + rise * (i * _STEP) for i in range(CELLS + 1)):
         turn = rise / kappa
         curve.append(
             square * (lag / skirt_stiffness + lag * kappa * kappa / tube_stiffness)
             + 0.75 * turn * turn
         )
         load.append(square * supply * kappa * sqrt(kappa))
-    part = step * step / 12
-    scales = [1 / (1 - part * value) for value in curve]
-    shares, sums = [0.0], [part * load[0]]  # y_i = share y_(i+1) + sum
-    for i in range(1, CELLS):
-        share = 1 / (12 * scales[i] - 10 - shares[-1])
-        sums.append(share * (sums[-1] + 12 * part * load[i] * scales[i]))
-        shares.append(share)
-    # the last nodes as (slope, constant) functions of y at the end of the taper
-    chain: list[tuple[Array, Array]] = [(1.0, 0.0)]
-    for i in range(CELLS - 1, CELLS - 4, -1):
-        slope, constant = chain[-1]
-        chain.append((shares[i] * slope, shares[i] * constant + sums[i]))
-    nodes = range(CELLS, CELLS - 4, -1)
-    grown = [
-        (slope * scales[i], (constant - part * load[i]) * scales[i])
-        for i, (slope, constant) in zip(nodes, chain, strict=True)
-    ]
-    bent = [(curve[i] * a, curve[i] * b - load[i]) for i, (a, b) in zip(nodes, grown, strict=True)]
-    (gradient, offset), (end, rest) = (
-        (
-            ((grown[0][j] - grown[1][j]) / step + step * _end_slope([one[j] for one in bent]))
-            for j in (0, 1)
-        ),
-        grown[0],
-    )
+    cells = _Numerov.of(curve, load)
+    (gradient, end), (offset, rest) = cells.end_slopes()
     gradient, offset = (gradient + rise * end / 2) / scale, (offset + rise * rest / 2) / scale
     flex = 1 / skirt_stiffness + 1 / tube_stiffness
     rate, even = sqrt(positive(lag * flex)), supply / (lag * flex)
@@ -520,13 +496,67 @@ def tapered_lap(
     value = (reached + even - lead * offset - rest) / (lead * gradient + end)
     at_end = gradient * value + offset
     at_tube = rate * (line_force - even) * tangent + at_end * cut
-    for i in range(CELLS - 1, 0, -1):
-        value = shares[i] * value + sums[i]
-        if i < 4:
-            chain.append((value - part * load[i], scales[i]))
-    first = [0.0, *((a * b) for a, b in reversed(chain[-3:]))]
-    slopes = [curve[i] * phi - load[i] for i, phi in enumerate(first)]
-    return TaperedLap((first[1] / step - step * _end_slope(slopes)) / (scale * sqrt(root)), at_tube)
+    return TaperedLap(cells.start_slope(value) / (scale * sqrt(root)), at_tube)
+
+
+_STEP = 1 / CELLS
+_PART = _STEP * _STEP / 12
+
+
+class _Numerov(NamedTuple):
+    """Numerov's equations of phi'' = curve phi - load over the unit length, with phi = 0 at 0.
+
+    With y_i = (1 - curve_i step^2/12) phi_i + load_i step^2/12, elimination from the start leaves
+    y_i = shares_i y_(i+1) + sums_i; `scales` are phi per y.
+    """
+
+    curve: Sequence[Array]
+    load: Sequence[Array]
+    scales: Sequence[Array]
+    shares: Sequence[Array]
+    sums: Sequence[Array]
+
+    @classmethod
+    def of(cls, curve: Sequence[Array], load: Sequence[Array]) -> _Numerov:
+        """Eliminate from the start."""
+        scales = [1 / (1 - _PART * value) for value in curve]
+        shares, sums = [0.0], [_PART * load[0]]
+        for i in range(1, CELLS):
+            share = 1 / (12 * scales[i] - 10 - shares[-1])
+            sums.append(share * (sums[-1] + 12 * _PART * load[i] * scales[i]))
+            shares.append(share)
+        return cls(curve, load, scales, shares, sums)
+
+    def end_slopes(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """Slope and value at the end, as factors of y there and as constants."""
+        curve, load = self.curve, self.load
+        chain: list[tuple[Array, Array]] = [(1.0, 0.0)]
+        for i in range(CELLS - 1, CELLS - 4, -1):
+            slope, constant = chain[-1]
+            chain.append((self.shares[i] * slope, self.shares[i] * constant + self.sums[i]))
+        nodes = range(CELLS, CELLS - 4, -1)
+        grown = [
+            (slope * self.scales[i], (constant - _PART * load[i]) * self.scales[i])
+            for i, (slope, constant) in zip(nodes, chain, strict=True)
+        ]
+        bent = [
+            (curve[i] * a, curve[i] * b - load[i]) for i, (a, b) in zip(nodes, grown, strict=True)
+        ]
+        gradient, offset = (
+            (grown[0][j] - grown[1][j]) / _STEP + _STEP * _end_slope([one[j] for one in bent])
+            for j in (0, 1)
+        )
+        return (gradient, grown[0][0]), (offset, grown[0][1])
+
+    def start_slope(self, value: Array) -> Array:
+        """Slope at the start, from y at the end."""
+        first: list[Array] = [0.0] * 4
+        for i in range(CELLS - 1, 0, -1):
+            value = self.shares[i] * value + self.sums[i]
+            if i < 4:
+                first[i] = (value - _PART * self.load[i]) * self.scales[i]
+        slopes = [self.curve[i] * phi - self.load[i] for i, phi in enumerate(first)]
+        return first[1] / _STEP - _STEP * _end_slope(slopes)
 
 
 def _end_slope(second: Sequence[Array]) -> Array:

@@ -18,8 +18,8 @@ from ..design.model import Design
 from ..evaluation.result import TABLES, Evaluation, Metric, PathValue
 from ..metrics import of_metric
 from ..rendering.tables import DataColumn, DataTable, coded
-from . import prices
-from .prices import Offers, Sensitivity, offers
+from . import price_table
+from .price_table import Offers, Sensitivity, offers
 from .problem import Robust
 
 
@@ -469,7 +469,9 @@ class Optimisation(Displayed):
             return ()
         maximised = self.design.objective.maximise is not None
         quantity = of_metric(self.objective_metric)
-        return prices.buys_most(self.offers, quantity, self.objective_value, maximised=maximised)
+        return price_table.buys_most(
+            self.offers, quantity, self.objective_value, maximised=maximised
+        )
 
     def __str__(self) -> str:
         """Outcome, variables, and the evaluation of the best design, as tables."""

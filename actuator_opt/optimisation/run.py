@@ -23,7 +23,7 @@ from .choices import (
     search_choices,
 )
 from .infeasibility import explained
-from .prices import Sensitivity, sensitivities
+from .price_table import Sensitivity, sensitivities
 from .result import Certificate, Choices, Infeasibility, Kkt, Optimisation, Rounding, VariableResult
 from .rounding import Wanted, design_at, rounded, sizes_of
 from .solution import Outcome, Solution
@@ -188,28 +188,28 @@ def optimise(
         actuator = build(subject, fault)
         require_movable_objective(actuator)
         solution = _confirmed(
-            actuator,
-            algorithm=algorithm,
-            starts=starts,
-            samples=SAMPLES,
-            seed=seed,
-            max_seconds=max_seconds,
-            keep_interrupted=keep_interrupted,
-        )
+            actuator, algorithm=algorithm, starts=starts, samples=SAMPLES, seed=seed,
+            max_seconds=max_seconds, keep_interrupted=keep_interrupted,
+        )  # fmt: skip
     follow_up = _FollowUp(solution)
     try:
         if sizes is not None and solution.feasible and not solution.interrupted:
-            search_args = (sizes, None) if sized is None else (sized.sizes, sized.size_search)
+            found = (sizes, None) if sized is None else (sized.sizes, sized.size_search)
             follow_up.rounding, follow_up.solution = rounded(
-                actuator, solution, *search_args, until=deadline, seed=seed
+                actuator, solution, *found, until=deadline, seed=seed
             )
         _complete(actuator, follow_up, prices=prices, certify=certify, explain=explain)
     except KeyboardInterrupt:
         if not keep_interrupted:
             raise
-        outcome = Outcome.INTERRUPTED if solution.feasible else Outcome.INTERRUPTED_INFEASIBLE
-        follow_up = _FollowUp(replace(solution, outcome=outcome))
+        follow_up = _FollowUp(_interrupted(solution))
     return _result(subject, actuator, follow_up, choices, seed, began)
+
+
+def _interrupted(solution: Solution) -> Solution:
+    """The solution, marked as that of an interrupted search."""
+    outcome = Outcome.INTERRUPTED if solution.feasible else Outcome.INTERRUPTED_INFEASIBLE
+    return replace(solution, outcome=outcome)
 
 
 def _confirmed(actuator: ActuatorProblem, **settings: Any) -> Solution:

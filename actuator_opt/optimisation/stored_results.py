@@ -21,7 +21,7 @@ from ..base.errors import InputError
 from ..base.quantities import Sense
 from ..design import Design
 from ..design.build import build as build_design, to_tree
-from ..design.cycle_files import CycleFile
+from ..design.data_file import DataFile
 from ..design.kinds import Fraction
 from ..evaluation import Evaluation, evaluate, prepare
 from ..evaluation.plugin import Plugin, with_own
@@ -40,7 +40,7 @@ _PLAIN: dict[Any, Any] = {float: (int, float), int: int, str: str, bool: bool}
 def to_plain(result: Optimisation | ParetoFront) -> dict[str, Any]:
     """A result as JSON data: `designs`, and `result`, which refers to the designs.
 
-    If the designs have cycle files, `files` are the texts to which the designs refer.
+    If the designs have data files, `files` are the texts to which the designs refer.
     """
     designs: list[dict[str, Any]] = []
     files: list[str] = []
@@ -59,7 +59,7 @@ def to_plain(result: Optimisation | ParetoFront) -> dict[str, Any]:
     def plain(value: Any) -> Any:
         if isinstance(value, np.generic):
             value = value.item()
-        if isinstance(value, CycleFile) and not value.inside:
+        if isinstance(value, DataFile) and not value.inside:
             return {_FILE: [str(value), file(value.text)]}
         if value is None or isinstance(value, (str, bool, int)):
             return value
@@ -134,7 +134,7 @@ def from_plain(
     readers: dict[str, Callable[[Any], Any]] = {
         _DESIGN: design,
         _EVALUATION: evaluation,
-        _FILE: lambda entry: CycleFile(str(entry[0]), str(data["files"][entry[1]])),
+        _FILE: lambda entry: DataFile(str(entry[0]), str(data["files"][entry[1]])),
         _FRACTION: Fraction,
         _NUMBER: float,
     }

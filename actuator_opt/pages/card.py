@@ -16,7 +16,7 @@ from typing import Any
 from ..design.paths import words_of
 from ..evaluation.result import Check, Evaluation, Requirement, count_words, percent
 from ..metrics import term_of
-from ..optimisation.prices import PER_CENT, Sensitivity
+from ..optimisation.price_table import PER_CENT, Sensitivity
 from ..optimisation.problem import Robust
 from ..optimisation.result import Infeasibility, Optimisation, VariableResult
 from ..rendering import text

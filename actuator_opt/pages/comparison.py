@@ -143,7 +143,8 @@ def sentences(comparison: Comparison) -> list[str]:
         if missed:
             lines.append(f"{label} misses {len(missed)} of its requirements: {', '.join(missed)}")
     lines += below_one(comparison)
-    return [*lines, *optimality(comparison, remedy=True), *unlike(comparison), *duties(comparison)]
+    lines += [*optimality(comparison, remedy=True), *unlike(comparison), *conditions(comparison)]
+    return lines
 
 
 def below_one(comparison: Comparison) -> list[str]:
@@ -192,16 +193,16 @@ def optimality(comparison: Comparison, *, remedy: bool = False) -> list[str]:
     return [f"{words}; --optimise optimises each design first" if remedy and can else words]
 
 
-def duties(comparison: Comparison) -> list[str]:
-    """A remark if the designs have different duties; empty if all are equal."""
-    paths = comparison.duties_differ
+def conditions(comparison: Comparison) -> list[str]:
+    """A remark if the designs have different operating conditions; empty if all are equal."""
+    paths = comparison.differing_conditions
     if not paths:
         return []
     more = f" and {len(paths) - 3} more" if len(paths) > 3 else ""
     return [
         (
-            f"their duties differ ({', '.join(paths[:3])}{more}): each design is judged at its "
-            "own duty"
+            f"their operating conditions differ ({', '.join(paths[:3])}{more}): each design is "
+            "judged at its own"
         )
     ]
 
@@ -323,7 +324,7 @@ def comparison_figure(comparison: Comparison) -> Ink:
     """
     questions = _with_bars(comparison)
     heads = [wrap(named(comparison, k), _WIDTH - 12.0, 7.0) for k in range(len(comparison.labels))]
-    remarks = (_NOTE, *duties(comparison), *optimality(comparison))
+    remarks = (_NOTE, *conditions(comparison), *optimality(comparison))
     notes = [line for words in remarks for line in _wrapped(words)]
     answers = [_wrapped(answer(comparison, question)) for question in questions]
     above = _TOP + 1.0 + _LINE * sum(map(len, heads)) + _SMALL * len(notes) + 4.0

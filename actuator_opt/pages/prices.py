@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..base.quantities import Quantity
 from ..evaluation.result import Requirement
-from ..optimisation.prices import PER_CENT, STRAIGHT, Sensitivity, display_of, short_name
+from ..optimisation.price_table import PER_CENT, STRAIGHT, Sensitivity, display_of, short_name
 from ..optimisation.result import Optimisation
 from ..rendering import text
 from ..rendering.blocks import Block, Cell, Column, Drawing, Medium, Notes, Reach, Table, soft

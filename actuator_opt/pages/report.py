@@ -13,7 +13,7 @@ from ..evaluation import result
 from ..evaluation.parts_list import parts_list
 from ..evaluation.result import Evaluation, Requirement
 from ..metrics import METRICS
-from ..optimisation.prices import PER_CENT
+from ..optimisation.price_table import PER_CENT
 from ..optimisation.result import Optimisation
 from ..rendering import heights, text
 from ..rendering.blocks import (

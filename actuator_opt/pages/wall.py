@@ -582,5 +582,5 @@ def _metals(study: WallStudy) -> Block:
         "the same axial forces, without a minimum wall for turning."
     )
     return Table(
-        "Barrel wall: metal barrels for the same duty", columns, rows, note=note, on="paper"
+        "Barrel wall: metal barrels for the same limits", columns, rows, note=note, on="paper"
     )

@@ -14,7 +14,7 @@ from ..base.quantities import RESULTS, Quantity
 from ..base.tables import Displayed
 from ..design.scenario.kinds import SHAPES, Records
 from ..design.scenario.model import Scenario, SignalSegment
-from ..evaluation.result import State, without_reserve
+from ..evaluation.result import State, state_of
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..studies.plant import Plant
 from .basis import Basis
@@ -113,9 +113,7 @@ class RequirementResult:
     @property
     def state(self) -> State:
         """The requirement is "missed", "met", or met without a reserve ("no_reserve")."""
-        if not self.met:
-            return "missed"
-        return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
+        return state_of(self.met, self.margin, self.limit)
 
 
 @dataclass(frozen=True, slots=True)

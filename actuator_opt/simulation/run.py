@@ -14,6 +14,7 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..base.quantities import INPUTS, SCENARIOS
+from ..design.data_file_reader import replace_by_digests
 from ..design.ideal import assumptions
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import SAMPLES, Scenario
@@ -385,6 +386,7 @@ def _reference_outside_stroke(actuator: Plant, signals: Mapping[str, Array]) -> 
 def spec_of(subject: PreparedDesign, scenario: Scenario) -> str:
     """Hash of all inputs that affect the result."""
     content = scenario.model_dump(mode="json", exclude={"reproduces"})
+    replace_by_digests(content, scenario)
     if content["load"]["cylinder"]:
         leave_out_unset(content["load"]["cylinder"]["valve"])
     for block, key in (

@@ -19,7 +19,7 @@ from ..base.quantities import Quantity
 from ..base.symbolic import gpu
 from ..base.symbolic.program import Program
 from ..design import Design
-from ..design.cycle_reader import portable
+from ..design.data_file import portable
 from ..design.paths import quantity_of
 from ..design.writer import to_yaml
 from ..evaluation import PreparedDesign
@@ -318,7 +318,7 @@ class Study:
 
     @property
     def text(self) -> str:
-        """Return the design as the text of its file, which contains the texts of its cycles."""
+        """Return the design as the text of its file, which contains the texts of its data files."""
         return to_yaml(portable(self.design), metrics=self._quantities)
 
     def values(self, number: int) -> dict[str, float | str]:

@@ -17,7 +17,7 @@ from ..design import Design, read_design
 from ..evaluation import PreparedDesign
 from ..evaluation.build import limits_of, margins_many
 from ..evaluation.limits import MetricLimit
-from ..evaluation.outline import Shapes, same_dimensions, shapes
+from ..evaluation.outline_templates import Shapes, same_dimensions, shapes
 from ..evaluation.plugin import Plugin, with_own
 from ..metrics import METRICS
 from ..version import VERSION

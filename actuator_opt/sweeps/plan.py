@@ -23,7 +23,7 @@ from ..base.errors import Diagnostic, InputError, UsageError, shown
 from ..base.numeric import Array
 from ..base.quantities import Quantity
 from ..design import Design, with_values
-from ..design.cycle_files import CycleFile
+from ..design.data_file import DataFile
 from ..design.materials import load_library
 from ..design.paths import canonical, get, quantity_of
 
@@ -324,9 +324,9 @@ def _listed(
             )
         )
     values = [_value(path, part, design, metrics) for part in dict.fromkeys(parts)]
-    if any(isinstance(value, CycleFile) for value in values):
-        message = "the file of a cycle cannot be varied"
-        remedy = "state a cycle for every file, or run once per file with --set"
+    if any(isinstance(value, DataFile) for value in values):
+        message = "the name of a file cannot be varied"
+        remedy = "run once per file with --set"
         raise InputError(Diagnostic(message, remedy, path=path))
     if distinct and len(set(values)) < len(parts):
         raise UsageError(Diagnostic(f"--vary {path}: a value is given twice", FORM))

@@ -1,8 +1,8 @@
 """What holds the ends of the flight control actuator best.
 
 `aerospace.yaml` is optimised for least mass with each way to hold its ends: tie rods, bonded caps,
-split rings, screwed plugs, and plugs screwed into sleeves. Duty, requirements and materials stay;
-ends that an adhesive does not seal get static seals. A further joint is an entry of `ENDS`.
+split rings, screwed plugs, and plugs screwed into sleeves. Load cases, requirements and materials
+stay; ends that an adhesive does not seal get static seals. A further joint is an entry of `ENDS`.
 
     python designs/scripts/aerospace_ends.py                  # prints the tables
     python designs/scripts/aerospace_ends.py --out reports    # and writes the report there

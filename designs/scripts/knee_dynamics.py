@@ -111,11 +111,11 @@ def passing_share(design: Any, case: str) -> float:
     Centred, both edges of a chamber leak; held, the one that leaks less opens to feed the other and
     the bleed. The bleed counts twice on each chamber: the chambers swing against one another.
     """
-    duty = next(one for one in design.load_cases if one.name == case)
+    load_case = next(one for one in design.load_cases if one.name == case)
     area = pi / 4 * design.cylinder.bore**2
     ring = area - pi / 4 * design.rod.outer_diameter**2
     high, low = design.supply.pressure, design.supply.return_pressure
-    force = duty.force if duty.direction == "push" else -duty.force
+    force = load_case.force if load_case.direction == "push" else -load_case.force
     pressure_a = (force + (high + low) * ring) / (area + ring)
     bleed = design.piston.leakage_conductance
     edge = design.valve.leakage_flow / sqrt(design.valve.leakage_drop)

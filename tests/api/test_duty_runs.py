@@ -83,7 +83,7 @@ def test_the_file_of_a_cycle_cannot_be_varied(design):
     """A store knows the files of the design only."""
     result = run("sweep", design, "--vary", "duty.cycles[walk].file=gait_knee.csv,run_knee.csv")
     assert result.code == 3
-    assert "the file of a cycle cannot be varied" in result.err
+    assert "the name of a file cannot be varied" in result.err
 
 
 @pytest.mark.long

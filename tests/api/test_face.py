@@ -20,7 +20,7 @@ from rendering.test_html import Balance
 import actuator_opt as ao
 from actuator_opt.api import results
 from actuator_opt.base.arguments import guarded
-from actuator_opt.optimisation.prices import Sensitivity
+from actuator_opt.optimisation.price_table import Sensitivity
 
 BONDED = DESIGNS / "knee_bonded.yaml"
 SLOW = {

@@ -1,4 +1,4 @@
-"""Start designs: a duty gives a solved design of one page."""
+"""Start designs: few answers give a solved design of one page."""
 
 from __future__ import annotations
 
@@ -10,16 +10,18 @@ import yaml
 
 import actuator_opt as ao
 from actuator_opt.api import starting
-from actuator_opt.api.starting import Duty
+from actuator_opt.api.starting import StartAnswers
 from actuator_opt.metrics.table import CHECKS
 
-DUTIES = [
-    Duty(500.0, 500.0, 0.5, 350e5),
-    Duty(50e3, 50e3, 0.5, 50e5, wall="aluminium"),
-    Duty(43e3, 42e3, 0.023, 250e5),  # skirts that nearly meet, on a spigot
-    Duty(1.2e3, 1e3, 0.04, 60e5, wall="lined_carbon"),
-    Duty(2e3, 1e3, 0.06, 120e5, wall="linerless"),
-    Duty(9e3, 3e3, 0.18, 350e5, "friction", "lined_carbon", 0.06, 0.15, 10e6),  # longest file
+ANSWERS = [
+    StartAnswers(500.0, 500.0, 0.5, 350e5),
+    StartAnswers(50e3, 50e3, 0.5, 50e5, wall="aluminium"),
+    StartAnswers(43e3, 42e3, 0.023, 250e5),  # skirts that nearly meet, on a spigot
+    StartAnswers(1.2e3, 1e3, 0.04, 60e5, wall="lined_carbon"),
+    StartAnswers(2e3, 1e3, 0.06, 120e5, wall="linerless"),
+    StartAnswers(
+        9e3, 3e3, 0.18, 350e5, "friction", "lined_carbon", 0.06, 0.15, 10e6
+    ),  # longest file
 ]
 """The corners of forces, stroke and pressure, and each wall."""
 
@@ -36,10 +38,12 @@ def missed_checks(evaluation):
     return {check.name for check in evaluation.checks if check.status == "missed"} - advice
 
 
-@pytest.mark.parametrize("duty", DUTIES, ids=lambda duty: f"{duty.wall} {duty.push:g} N")
-def test_a_start_meets_its_limits_on_one_page(duty):
+@pytest.mark.parametrize(
+    "answers", ANSWERS, ids=lambda answers: f"{answers.wall} {answers.push:g} N"
+)
+def test_a_start_meets_its_limits_on_one_page(answers):
     """Every limit is met with round numbers; areas by hand carry the forces; at most 60 lines."""
-    start = starting.solved_start(duty, "leg: α")
+    start = starting.solved_start(answers, "leg: α")
     assert (start.met, start.sentence) == (True, "")
     lines = start.text.splitlines()
     assert len(lines) <= 60
@@ -50,13 +54,13 @@ def test_a_start_meets_its_limits_on_one_page(duty):
     evaluation = ao.evaluate(design)
     assert evaluation.met
     assert not missed_checks(evaluation)
-    cases, arm = design.load_cases, duty.lever_arm
+    cases, arm = design.load_cases, answers.lever_arm
     loads = [case.force if arm is None else case.joint_torque / arm for case in cases]
-    assert loads == pytest.approx([duty.push, duty.pull])
+    assert loads == pytest.approx([answers.push, answers.pull])
     bore, rod = design.cylinder.bore, design.rod.outer_diameter
     ring = pi / 4 * (bore**2 - rod**2)
-    assert duty.pressure * pi / 4 * bore**2 - duty.return_pressure * ring > duty.push
-    assert duty.pressure * ring - duty.return_pressure * pi / 4 * bore**2 > duty.pull
+    assert answers.pressure * pi / 4 * bore**2 - answers.return_pressure * ring > answers.push
+    assert answers.pressure * ring - answers.return_pressure * pi / 4 * bore**2 > answers.pull
     for path, variable in design.variables.items():
         assert variable.lower <= variable.start <= variable.upper, path
 
@@ -91,7 +95,7 @@ def test_a_joint_is_stated_by_torque_arm_speed_and_stiffness():
 
 def test_what_does_not_fit_says_why():
     """The seals bear 0.5 m/s: a faster start is the nearest design, with the reason on top."""
-    start = starting.solved_start(Duty(5e3, 2e3, 0.05, 160e5, speed=0.6))
+    start = starting.solved_start(StartAnswers(5e3, 2e3, 0.05, 160e5, speed=0.6))
     assert not start.met
     assert start.sentence == "missed: piston speed"
     assert start.text.startswith("# Nothing fits yet: missed: piston speed.\n")
@@ -128,7 +132,7 @@ def test_a_double_rod_start_pushes_as_it_pulls(wall):
         ({"name": "two\nlines"}, "unprintable"),
     ],
 )
-def test_unsuitable_duties(changes, words):
+def test_unsuitable_answers(changes, words):
     """One clear line each, before anything is solved."""
     with pytest.raises(ao.ActuatorError, match=r"^[^\n]*$") as error:
         ao.start(**changes)

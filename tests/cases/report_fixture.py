@@ -24,7 +24,7 @@ from actuator_opt.evaluation.result import (
     StrokeCurve,
     Unverified,
 )
-from actuator_opt.optimisation.prices import Sensitivity
+from actuator_opt.optimisation.price_table import Sensitivity
 from actuator_opt.optimisation.result import Infeasibility, Kkt, Optimisation, VariableResult
 from actuator_opt.pages import report
 from actuator_opt.rendering import paper, terminal

@@ -191,13 +191,13 @@ def test_init_makes_a_good_start(tmp_path):
     )
 
 
-DUTY = ("--push", "3 kN", "--pull", "1 kN", "--stroke", "50 mm", "--pressure", "120 bar")
+ANSWERS = ("--push", "3 kN", "--pull", "1 kN", "--stroke", "50 mm", "--pressure", "120 bar")
 
 
 def test_init_without_a_terminal_needs_a_duty(tmp_path, monkeypatch):
     """Exit 2 names the missing flags; nothing is written; a copy takes no duty."""
     monkeypatch.chdir(tmp_path)
-    for words in ((), DUTY[:2]):
+    for words in ((), ANSWERS[:2]):
         result = run("init", "leg", *words)
         assert (result.code, result.out) == (2, "")
         (line,) = result.err.splitlines()
@@ -212,7 +212,7 @@ def test_init_without_a_terminal_needs_a_duty(tmp_path, monkeypatch):
 def test_init_asks_on_a_terminal(tmp_path, monkeypatch):
     """Five questions with defaults; a bad answer is asked again; the end of input writes nothing.
 
-    The same duty by flags gives the same file.
+    The same answers by flags gives the same file.
     """
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(streams, "asking", lambda: True)
@@ -229,7 +229,7 @@ def test_init_asks_on_a_terminal(tmp_path, monkeypatch):
     for remark in ('"3 kN"; write', "unit missing", '"oak" is not a wall'):
         assert result.err.count(remark) == 1
     text = (tmp_path / "leg.yaml").read_text(encoding="utf-8")
-    assert run("init", "leg", "--out", "-", *DUTY, "--yes").out == text
+    assert run("init", "leg", "--out", "-", *ANSWERS, "--yes").out == text
     assert run("evaluate", "leg.yaml").code == 0
 
 

@@ -135,7 +135,7 @@ def test_the_steel_baseline_has_the_duty_of_the_knee() -> None:
 
 
 def test_seals_that_bear_a_wider_gap_save_mass(optima) -> None:
-    """The duty of the knee, and its limits but for the gap; at least a tenth lighter."""
+    """The load cases of the knee, and its limits but for the gap; at least a tenth lighter."""
     knee, tolerant = (verbs.read(DESIGNS / f"{n}.yaml") for n in ("knee", "knee_gap_tolerant"))
     for block in ("fluid", "supply", "environment", "load", "load_cases", "objective", "clevis"):
         assert getattr(knee.design, block) == getattr(tolerant.design, block), block

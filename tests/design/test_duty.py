@@ -19,10 +19,9 @@ import actuator_opt as ao
 from actuator_opt.api.checking import examine
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import numbers, with_values
-from actuator_opt.design.cycle_files import CycleFile
 from actuator_opt.design.cycle_peaks import peaks, rod_course
-from actuator_opt.design.cycle_reader import moved, portable, texts_of
-from actuator_opt.design.duty import DutyCycle
+from actuator_opt.design.data_file import DataFile, moved, portable, texts_of
+from actuator_opt.design.duty import DutyCycle, cycle_of
 from actuator_opt.design.paths import canonical, words_of
 from actuator_opt.design.reader import read_design
 from actuator_opt.design.schema import json_schema
@@ -194,7 +193,7 @@ def test_copies_keep_the_content(knee):
     for other in (pickle.loads(pickle.dumps(knee)), copy.deepcopy(knee)):
         assert other == knee
         assert other.duty.cycles[0].record.digest == knee.duty.cycles[0].record.digest
-    renamed = CycleFile("gait_knee.csv", AXIAL)
+    renamed = DataFile("gait_knee.csv", AXIAL)
     assert renamed != knee.duty.cycles[0].file
     assert renamed == "gait_knee.csv"
 
@@ -386,10 +385,10 @@ def test_peaks_of_the_gait_through_a_linkage(knee):
 def test_scales_and_a_constant_lever_arm():
     """F = k T/a, x = a theta, v = a w/m; power k/m."""
     text = (CYCLES / "gait_knee.csv").read_text("utf-8")
-    file = CycleFile("gait.csv", text)
+    file = DataFile("gait.csv", text)
     one = peaks(DutyCycle(name="walk", file=file, lever_arm=0.05))
     other = peaks(DutyCycle(name="walk", file=file, lever_arm=0.05, torque_scale=1.5, time_scale=2))
-    record = file.record(closed=True)
+    record = file.parsed(cycle_of, closed=True)
     assert one.push == pytest.approx(record.torque.max() / 0.05)
     assert one.pull == pytest.approx(-record.torque.min() / 0.05)
     assert one.travel == pytest.approx(0.05 * np.ptp(record.angle))
@@ -399,7 +398,7 @@ def test_scales_and_a_constant_lever_arm():
     assert other.period == pytest.approx(2.2)
     with pytest.raises(InputError, match="there is no linkage"):
         peaks(DutyCycle(name="walk", file=file))
-    axial = peaks(DutyCycle(name="rig", file=CycleFile("a.csv", AXIAL), force_scale=2))
+    axial = peaks(DutyCycle(name="rig", file=DataFile("a.csv", AXIAL), force_scale=2))
     assert (axial.push, axial.pull) == pytest.approx((1600, 1200))
     assert (axial.position_low, axial.position_high) == pytest.approx((0.02, 0.09))
     assert (axial.reversals, axial.torque) == (2, None)

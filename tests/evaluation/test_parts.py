@@ -18,7 +18,7 @@ import actuator_opt as ao
 from actuator_opt.base.errors import InputError
 from actuator_opt.design import standard_sizes
 from actuator_opt.design.materials import load_library
-from actuator_opt.evaluation.outline import shapes
+from actuator_opt.evaluation.outline_templates import shapes
 from actuator_opt.evaluation.parts_list import parts_list
 from actuator_opt.exports.dxf import dxf
 from actuator_opt.exports.step import bodies, step

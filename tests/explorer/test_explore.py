@@ -20,7 +20,7 @@ from sweep_case import KNEE, NEAR
 import actuator_opt as ao
 from actuator_opt.base.database import Checksums, study_checksum
 from actuator_opt.base.errors import InputError, UsageError
-from actuator_opt.evaluation.outline import LENGTHS
+from actuator_opt.evaluation.outline_templates import LENGTHS
 from actuator_opt.sweeps.explored import BEST, explored
 
 VARY = ["cylinder.bore=20.8..21.2 mm:4", "rod.outer_diameter=10.6..11.2 mm:3"]

@@ -15,8 +15,8 @@ from cli_runner import bench, run
 
 import actuator_opt as ao
 from actuator_opt.base.numeric import STEP
-from actuator_opt.base.symbolic import program as programs
-from actuator_opt.base.symbolic.expression import function, jacobian, needed
+from actuator_opt.base.symbolic import function, jacobian, program as programs
+from actuator_opt.base.symbolic.expression import needed
 from actuator_opt.design.materials import load_library
 from actuator_opt.evaluation import compute
 from actuator_opt.evaluation.kernel import governing

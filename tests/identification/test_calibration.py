@@ -114,7 +114,7 @@ def test_another_rise_with_pressure_is_said():
     assert any("deviates from the contact law" in words for words in found.doubts)
 
 
-def test_duties_beyond_the_record_are_said():
+def test_loads_beyond_the_record_are_said():
     """The record's speed and pressure are named beside the design's."""
     found = calibration(rubbed(changed(1.0, 2.0, 3e-3, 100.0)))
     said = [words for words in found.doubts if words.startswith("the record reaches")]

@@ -19,7 +19,8 @@ from actuator_opt.evaluation import prepare
 from actuator_opt.evaluation.plugin import collect
 from actuator_opt.optimisation import actuator as actuator_module
 from actuator_opt.optimisation.actuator import build
-from actuator_opt.optimisation.prices import prices, ranked, sensitivities
+from actuator_opt.optimisation.price_table import ranked, sensitivities
+from actuator_opt.optimisation.prices import prices
 from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, PointValues
 from actuator_opt.optimisation.resolve import ladder
 from actuator_opt.optimisation.solver import solve

@@ -76,7 +76,7 @@ def test_what_is_set_is_what_differs(base):
     assert (half.questions[0].best, half.questions[1].best, half.questions[2].best) == (
         None,
     ) * 2 + (1,)
-    assert any("swing" in path for path in found.duties_differ)
+    assert any("swing" in path for path in found.differing_conditions)
 
 
 def test_one_part_alone_is_the_reason(base):
@@ -101,7 +101,7 @@ def test_ties_have_no_winner_and_groups_do(base):
     three = ao.compare(base, slow, heavy)
     assert three.questions[0].leaders == (0, 1)
     assert sentences(three)[0].startswith("lighter: A and B, ")
-    assert "their duties differ (load_cases[swing].speed)" in sentences(three)[-1]
+    assert "their operating conditions differ (load_cases[swing].speed)" in sentences(three)[-1]
 
 
 @pytest.mark.long

@@ -11,7 +11,7 @@ from report_fixture import overlaps
 
 from actuator_opt.design import read_design
 from actuator_opt.optimisation import run as runs
-from actuator_opt.optimisation.certificate.builder import refuse
+from actuator_opt.optimisation.certificate.envelopes import refuse
 from actuator_opt.optimisation.certificate.relaxation import Unknown
 from actuator_opt.optimisation.result import Certificate
 from actuator_opt.pages import trust

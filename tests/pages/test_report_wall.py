@@ -59,7 +59,7 @@ def test_all_of_the_wall_is_on_the_page():
         "from working pressure to burst",
         "exact tube compared with thin laminate",
         "thickness for another bore growth",
-        "metal barrels for the same duty",
+        "metal barrels for the same limits",
     ]
 
 

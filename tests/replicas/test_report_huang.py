@@ -17,7 +17,7 @@ from actuator_opt import api as verbs
 from actuator_opt.evaluation import film
 from actuator_opt.pages.report import page
 from actuator_opt.rendering.blocks import Drawing, Table
-from actuator_opt.replicas import MODULES, huang, huang_figures, huang_models
+from actuator_opt.replicas import MODULES, huang, huang_figures, huang_models, huang_notes
 
 pytestmark = pytest.mark.long
 
@@ -256,7 +256,7 @@ def test_misprints_stand_in_the_trace(tables):
 )
 def test_words_of_a_verdict(share, words):
     """By the share of a claim that holds."""
-    assert huang.verdict(share) == words
+    assert huang_notes.verdict(share) == words
 
 
 def test_figures_stand_after_their_tables(shipped, tables):

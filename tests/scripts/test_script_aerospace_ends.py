@@ -1,4 +1,4 @@
-"""The study of the flight control actuator's ends: equal duty, masses that can be checked."""
+"""The study of the flight control actuator's ends: equal load cases, masses that can be checked."""
 
 from __future__ import annotations
 

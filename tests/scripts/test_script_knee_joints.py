@@ -1,4 +1,4 @@
-"""The study of joints over pressure and bore: equal duty, masses that can be evaluated again."""
+"""The study of joints over pressure and bore: equal loads, masses that can be checked."""
 
 from __future__ import annotations
 

@@ -5,8 +5,10 @@ formula as an expression. The expression is then turned into plain Python (`code
 exactly (`derivative`), or passed to another engine.
 """
 
+from .code import function, vectorised
+from .derivative import jacobian
 from .equations import Equations
-from .expression import Expression, Graph, Namespace, Symbol, function, jacobian, vectorised
+from .expression import Expression, Graph, Namespace, Symbol
 
 __all__ = [
     "Equations", "Expression", "Graph", "Namespace", "Symbol", "function", "jacobian", "vectorised",

@@ -15,7 +15,9 @@ import numpy as np
 from ..dataclass import dataclass
 from ..numeric import Array
 from . import program as programs
-from .expression import Expression, Symbol, function, jacobian, needed, vectorised
+from .code import function, vectorised
+from .derivative import jacobian
+from .expression import Expression, Symbol, needed
 from .program import Program
 
 

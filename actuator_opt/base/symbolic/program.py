@@ -17,7 +17,8 @@ import numpy as np
 
 from ..dataclass import dataclass
 from ..numeric import Array
-from .expression import Symbol, is_steep_at_zero, needed
+from .derivative import is_steep_at_zero
+from .expression import Symbol, needed
 
 try:
     _MACHINE: Any = import_module("._machine", __package__)

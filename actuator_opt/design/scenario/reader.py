@@ -18,9 +18,9 @@ from ...base.errors import Diagnostic, Fault, InputError
 from ...base.numeric import Array
 from ...base.quantities import RESULTS, Quantity
 from ...metrics import METRICS
-from .. import flow_tables
-from ..build import check
+from ..build import check, copy_tree
 from ..changes import Override
+from ..data_file_reader import attach
 from ..kinds import Of, Section, Text, ValueFault
 from ..model import Design
 from ..paths import resolve, stated
@@ -71,6 +71,8 @@ def read_scenario(source: str | Path, *, overrides: Iterable[Change] = ()) -> Lo
     """
     text, file = opened(source, "scenario")
     document = parse(text, file, "scenario")
+    folder = Path() if file in (TEXT, STDIN) else Path(source).parent
+    beside: list[Diagnostic] = []
     scenario_overrides: list[Change] = []
     design_overrides: list[Change] = []
     for path, value in overrides:
@@ -78,13 +80,14 @@ def read_scenario(source: str | Path, *, overrides: Iterable[Change] = ()) -> Lo
         (design_overrides if of_design else scenario_overrides).append((path, value))
 
     def build_scenario(tree: dict[str, Any]) -> tuple[Scenario | None, Sequence[Fault]]:
-        with_tables, unread = flow_tables.attached(tree, flow_tables.OF_SCENARIO, document)
-        if unread:
-            return None, unread
-        checked = check(with_tables, Scenario, RESULTS, cross_field)
-        return checked.section, checked.faults
+        whole = copy_tree(tree)
+        file_faults = list(attach(whole, folder, root=Scenario))
+        beside[:] = [fault for fault in file_faults if isinstance(fault, Diagnostic)]
+        checked = check(whole, Scenario, RESULTS, cross_field)
+        faults = [*checked.faults, *(x for x in file_faults if isinstance(x, Fault))]
+        return (None if faults else checked.section), faults
 
-    scenario, place = load(document, Scenario, build_scenario, scenario_overrides, RESULTS)
+    scenario, place = load(document, Scenario, build_scenario, scenario_overrides, RESULTS, beside)
     stated_changes: list[tuple[str, str | None, Loc]] = [
         *((path, None, ("unset", index)) for index, path in enumerate(scenario.unset)),
         *((path, value, ("set", path)) for path, value in scenario.set.items()),
@@ -94,7 +97,6 @@ def read_scenario(source: str | Path, *, overrides: Iterable[Change] = ()) -> Lo
         origin = None if loc in place.overrides else document
         changes.append(Override(path, value, origin, () if origin is None else loc))
     changes += [Override(path, value) for path, value in design_overrides]
-    folder = Path() if file in (TEXT, STDIN) else Path(source).parent
     return LoadedScenario(scenario, place, folder, tuple(changes))
 
 

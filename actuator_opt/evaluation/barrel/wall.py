@@ -489,13 +489,7 @@ def thin_solution(layers: Sequence[Layer], g: Geometry) -> WallSolution:
     """Solve the thin laminate as a membrane: stresses at mid-radius, growth at the bore."""
     reduced, rotated, loads = [], [], []
     for layer in layers:
-        c = layer.constants
-        stiffness = ply.ply_stiffness(
-            youngs_modulus_1=c["youngs_modulus_1"],
-            youngs_modulus_2=c["youngs_modulus_2"],
-            poissons_ratio_12=c["poissons_ratio_12"],
-            shear_modulus_12=c["shear_modulus_12"],
-        )
+        stiffness = layer.plane_stiffness
         first, second = layer.expansions or (0.0, 0.0)
         reduced.append(stiffness)
         rotated.append(ply.rotated(stiffness=stiffness, angle=layer.angle))

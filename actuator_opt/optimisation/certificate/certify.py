@@ -21,7 +21,8 @@ import numpy as np
 
 from ...base.dataclass import dataclass
 from ...base.symbolic import Graph, Symbol
-from ...base.symbolic.expression import bounds_of, needed
+from ...base.symbolic.bounds import bounds_of
+from ...base.symbolic.expression import needed
 from ...evaluation.kernel import ModelRun, Statics, compute, statics
 from ...evaluation.limits import MetricArrays, MetricLimit
 from ...evaluation.values import Values
@@ -29,7 +30,8 @@ from ..actuator import ActuatorProblem
 from ..problem import Vector
 from ..solution import MET
 from .bounding import Bound, Bounding, KnownExtents, add_plain_sums, ranges
-from .builder import Builder, Envelopes, decays, layered, refuse
+from .builder import Builder
+from .envelopes import Envelopes, decays, layered, refuse
 from .intervals import ROOM, Box, Empty, Layout, narrow, tighten
 from .relaxation import ConstraintRow, Form, Relaxation, Unknown
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from ...base.dataclass import dataclass
 from ...base.symbolic import Symbol
-from ...base.symbolic.expression import Bounds, at_end, bounds, bounds_of
+from ...base.symbolic.bounds import Bounds, at_end, bounds, bounds_of
 from ..problem import Vector
 from .relaxation import (
     FAR,
