@@ -134,13 +134,13 @@ def collect(
         numbers["dynamic_viscosity"] = _flat(resting.dynamic_viscosity)
     seals = _seals(v, design, stock, g, resting, wall, sections, supply, numbers)
     parts, unknown = _fatigue(v, design, stock, g, wall, sections, loaded_joints, supply, numbers)
-    lines = tuple((line.chamber, i) for i, line in enumerate(design.lines))
+    lined = tuple((line.chamber, i) for i, line in enumerate(design.lines))
     linked = frozenset(
         cycle.name
         for cycle in design.duty.cycles
         if cycle.lever_arm is None and design.duty.record(cycle).joint
     )
-    plan = SamplePlan(linked, design.valve is not None, lines, seals, parts, unknown)
+    plan = SamplePlan(linked, design.valve is not None, lined, seals, parts, unknown)
     return plan, numbers
 
 

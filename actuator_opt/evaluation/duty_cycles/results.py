@@ -267,23 +267,24 @@ class _Cycle:
     def _sums(self, u: Numbers, track: SampleResults) -> Array:
         time = self.record.time[:, None] * u["time_scale"]
         total = self._total_flow(track.array("flow"))
-        most = np.argmax(total.real, axis=0)[None]
-        sums = sums_of(u, time, track) | {
-            "ripple_volume": supply_sizing.ripple_volume(time=time, flow=total).volume,
-            "flow_total": np.take_along_axis(total, most, axis=0)[0],
+        most = np.argmax(total.flow.real, axis=0)[None]
+        ripple = supply_sizing.ripple_volume(
+            time=total.time[:, None] * u["time_scale"], flow=total.flow
+        )
+        sums = sums_of(u, time, track, closed=self.record.closed) | {
+            "ripple_volume": ripple.volume,
+            "flow_total": np.take_along_axis(total.flow, most, axis=0)[0],
         }
         return np.stack(np.broadcast_arrays(*(sums[name] for name in SUMS)))
 
-    def _total_flow(self, flow: Array) -> Array:
+    def _total_flow(self, flow: Array) -> supply_sizing.FlowHistory:
         """Flow of all actuators on the supply; the others run the same cycle later or earlier."""
-        total, time = flow, self.record.time
-        period = time[-1] - time[0]
-        for phase in self.phases:
-            moved = (time - time[0] - phase * period) % period + time[0]
-            left = np.clip(np.searchsorted(time, moved, side="right") - 1, 0, len(time) - 2)
-            share = ((moved - time[left]) / (time[left + 1] - time[left]))[:, None]
-            total = total + (1 - share) * flow[left] + share * flow[left + 1]
-        return total
+        time = self.record.time
+        if not self.phases:
+            return supply_sizing.FlowHistory(time, flow)
+        phases = (0.0, *self.phases)
+        count = len(phases)
+        return supply_sizing.total_flow(times=[time] * count, flows=[flow] * count, phases=phases)
 
     def _seal_sums(self, u: Numbers, track: SampleResults) -> Array:
         """Severity and friction energy of every seal."""
@@ -330,7 +331,7 @@ SEAL_SUMS = ("severity", "seal_friction_energy")
 """Sums over a cycle for each seal."""
 
 
-def sums_of(u: Numbers, time: Array, track: SampleResults) -> dict[str, Array]:
+def sums_of(u: Numbers, time: Array, track: SampleResults, *, closed: bool) -> dict[str, Array]:
     """Sums over the motion and over time."""
     x, supply = track.array("position"), track.array("supply")
     leakage, force = track.array("leakage"), track.array("force")
@@ -365,7 +366,8 @@ def sums_of(u: Numbers, time: Array, track: SampleResults) -> dict[str, Array]:
         "inlet_heat": _flowing(track.array("inlet_drop"), volume),
         "inlet_volume": filled,
     }
-    return sums | _exchange(u, x, duration, turning_points(track.real("position")[:, 0]))
+    turns = turning_points(track.real("position")[:, 0])
+    return sums | _exchange(u, x, duration, turns, closed=closed)
 
 
 def _flowing(values: Array, volume: Array) -> Array:
@@ -382,13 +384,16 @@ def turning_points(position: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
 
 
 def _exchange(
-    u: Numbers, x: Array, duration: Array, turns: npt.NDArray[np.intp]
+    u: Numbers, x: Array, duration: Array, turns: npt.NDArray[np.intp], *, closed: bool
 ) -> dict[str, Array]:
     """Flow of fresh oil into each chamber: of every stroke, what the line does not hold back.
 
-    All designs turn at the same samples: a lever arm does not change its sign.
+    All designs turn at the same samples: a lever arm does not change its sign. The last stroke of
+    a closed cycle may go on in its first.
     """
     strokes = x[turns[1:]] - x[turns[:-1]]
+    if closed and len(strokes) > 1 and strokes[0, 0].real * strokes[-1, 0].real > 0:
+        strokes = np.concatenate([strokes[:1] + strokes[-1:], strokes[1:-1]])
     flows = {}
     for chamber, sign in (("a", 1.0), ("b", -1.0)):
         filling = np.where(sign * strokes.real > 0, sign * strokes, 0.0)
