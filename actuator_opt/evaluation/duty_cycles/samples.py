@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.dataclass import dataclass
-from ...base.numeric import STEP, Array, absolute, maximum, real, sqrt, where
+from ...base.numeric import STEP, Array, absolute, maximum, minimum, real, sqrt, where
 from ...base.symbolic.recorded import RecordedFunction
-from ...models import lines, linkage, quasi_static
-from .numbers import SHARES, SamplePlan
+from ...models import lapped_edge, lines, linkage, quasi_static
+from .numbers import LAP, SHARES, SPOOL, SamplePlan
 
 PASSES = 2
 """Passes for friction, which depends on the pressures, and pressures, which depend on friction."""
@@ -54,7 +54,8 @@ def sample(
         **move.chambers,
     )
     a, b = balance.a, balance.b
-    leak = _leakage(plan, u, move.extending, supply, a, b)
+    opening = _opening(move, balance.edge_drop) if plan.valve else 0.0
+    leak = _leakage(plan, u, move.extending, supply, a, b, opening)
     results = {
         "position": position,
         "arm": arm,
@@ -73,7 +74,7 @@ def sample(
         "inlet_drop": supply - where(move.extending, a, b),
     }
     if plan.valve:
-        results["opening"] = _opening(move, balance.edge_drop)
+        results["opening"] = opening
     for i, part in enumerate(balance.frictions):
         results[f"friction{i}"] = part
         results[f"contact{i}"] = _between(u, f"seal{i}.contact", _sealed(plan, i, a, b))
@@ -225,12 +226,21 @@ class _Seal:
 
 
 def _leakage(
-    plan: SamplePlan, u: Mapping[str, Array], extending: Array, supply: Array, a: Array, b: Array
+    plan: SamplePlan,
+    u: Mapping[str, Array],
+    extending: Array,
+    supply: Array,
+    a: Array,
+    b: Array,
+    opening: Array,
 ) -> Array:
     """Leakage that the supply feeds: past the two shut edges, and across the piston."""
     across = u["piston_leakage"] * absolute(a - b)
     if not plan.valve:
         return across
+    drops = supply - where(extending, b, a), where(extending, a, b) - u["drain"]
+    if plan.lapped:
+        return _lapped_leakage(u, extending, opening, *drops) + across
 
     def edge(name: str, drop: Array) -> Array:
         driving = maximum(drop, 0.0)
@@ -238,9 +248,31 @@ def _leakage(
         root = where(real(driving) > 0, sqrt(safe), 0.0)
         return u[f"{name}.leak_linear"] * driving + u[f"{name}.leak_root"] * root
 
-    out = edge("feed_b", supply - b) + edge("drain_a", a - u["drain"])
-    back = edge("feed_a", supply - a) + edge("drain_b", b - u["drain"])
+    out = edge("feed_b", drops[0]) + edge("drain_a", drops[1])
+    back = edge("feed_a", drops[0]) + edge("drain_b", drops[1])
     return where(extending, out, back) + across
+
+
+def _lapped_leakage(
+    u: Mapping[str, Array], extending: Array, opening: Array, feed_drop: Array, drain_drop: Array
+) -> Array:
+    """Flow past both shut edges of a lapped spool, which laps them farther as it opens the others.
+
+    The spool moves from where the feeding edge uncovers its port, in proportion to the opening.
+    """
+    start = where(extending, u["feed_a.overlap"], u["feed_b.overlap"])
+    place = start + minimum(opening, 1.0) * (u["spool.stroke"] - start)
+    oil = {key: u[f"spool.{key}"] for key in SPOOL if key != "stroke"}
+    flow: Array = 0.0
+    for out, back, drop in (
+        ("feed_b", "feed_a", feed_drop),
+        ("drain_a", "drain_b", drain_drop),
+    ):
+        shut = {key: where(extending, u[f"{out}.{key}"], u[f"{back}.{key}"]) for key in LAP}
+        flow = flow + lapped_edge.lapped_edge_flow(
+            uncovered=-place - shut.pop("overlap"), pressure_drop=maximum(drop, 0.0), **shut, **oil
+        )
+    return flow
 
 
 def leakage_at_rest(plan: SamplePlan, u: Mapping[str, Array]) -> Array:
