@@ -17,7 +17,7 @@ from ..base import errors, quantities, units
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.quantities import Quantity
-from ..metrics import METRICS, of_metric, term_of
+from ..metrics import METRICS, of_metric, split_case, term_of
 from .kinds import Fraction, Section, ValueFault
 from .model import Design
 from .structure import KeyEntry, Loc, blocks, child, child_at, entries, leaves, number_of
@@ -213,7 +213,7 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
         allowed, key = quantities.MATERIAL_PROPERTIES, last
         if not name:
             raise ValueFault(f"{path}: unknown PATH", "write materials.NAME.PROPERTY")
-    if key not in allowed:
+    if (split_case(key)[0] if head == "requirements" else key) not in allowed:
         noun = "metric" if head == "requirements" else "material property"
         raise ValueFault(f'{path}: "{key}" is not a {noun}', errors.remedy(key, allowed))
     return Target(path, (head, name, last), allowed[key])
