@@ -37,7 +37,7 @@ _TEXTS = ("waivers", "set")
 _TABLES = (*_ENDS, *_TEXTS, "requirements", "materials", "objective")
 
 
-NAMED_LISTS: tuple[Loc, ...] = (("load_cases",), ("duty", "cycles"))
+NAMED_LISTS: tuple[Loc, ...] = (("load_cases",), ("duty", "cycles"), ("duty", "levels"))
 """Lists whose entries PATHs give by name."""
 
 
@@ -262,8 +262,8 @@ def words_of(path: str) -> str:
         return term_of(rest.rpartition(".")[0])
     if head.startswith("load_cases["):
         return f"{rest} {head[len('load_cases[') : -1]}".replace("_", " ")
-    if path.startswith("duty.cycles["):
-        name, _, key = path.removeprefix("duty.cycles[").partition("].")
+    if path.startswith(("duty.cycles[", "duty.levels[")):
+        name, _, key = path.partition("[")[2].partition("].")
         return f"{key} {name}".replace("_", " ").replace(".", " ")
     if head == "seals":
         place, _, name = rest.partition(".")

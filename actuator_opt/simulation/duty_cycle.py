@@ -22,6 +22,7 @@ from ..base.quantities import INPUTS, Quantity
 from ..design.cycle_record import CycleRecord
 from ..design.duty import DutyCycle
 from ..design.model import Design, Load
+from ..design.paths import get
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import (
     Controller,
@@ -67,8 +68,10 @@ def plant_of(scenario: Scenario, actuator: Plant, *, loaded: bool) -> Plant:
     cycle = cycle_of(scenario, actuator.design)
     if cycle is None:
         return actuator
-    if cycle.supply_pressure is not None:
-        actuator = replace(actuator, supply_pressure=cycle.supply_pressure)
+    assert actuator.design.duty is not None
+    level = get(actuator.design, actuator.design.duty.pressure_path(cycle))
+    assert isinstance(level, float)
+    actuator = replace(actuator, supply_pressure=level)
     if loaded:
         return actuator
     load = actuator.design.load

@@ -52,14 +52,14 @@ def random_cycle(random, name, *, joint, arm):
         motion, load, t = motion[: 2 * count // 3], load[: 2 * count // 3], t[: 2 * count // 3]
     column = None
     if not joint and random.uniform() < 0.5:
-        column = wave(random, t, middle=150 * BAR, size=30 * BAR)
+        column = wave(random, t, middle=120 * BAR, size=20 * BAR)
     stated = {
         "repeats": float(10 ** random.uniform(4, 7)), "starts": float(random.integers(0, 5000)),
         "torque_scale" if joint else "force_scale": random.uniform(0.5, 1.5),
         "time_scale": random.uniform(0.7, 1.4),
     }  # fmt: skip
     also = [float(x) for x in random.uniform(0, 1, int(random.integers(0, 3)))] if closed else []
-    level = float(random.uniform(120, 200)) * BAR if column is None else None
+    level = float(random.uniform(90, 150)) * BAR if column is None else None
     if random.uniform() < 0.5:
         level = None
     lines = [f"{key}: {value!r}" for key, value in stated.items()]

@@ -13,9 +13,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from ...base.dataclass import dataclass
-from ...base.numeric import Array, array_of, maximum, namespace, sqrt
+from ...base.numeric import Array, array_of, maximum, minimum, namespace, sqrt
 from ...design.cycle_record import CycleRecord
-from ...design.duty import DutyCycle
+from ...design.duty import DutyCycle, DutySection
 from ...design.model import Design
 from ...joints.joint import Life
 from ...models import friction, lines, rod
@@ -166,19 +166,23 @@ def _cycle(
         arm = v[f"{at}lever_arm"]
         low, high = record.motion.min(), record.motion.max()
         shift = g.stroke / 2 - arm * (low + high) / 2
-    level = v["supply.pressure"]
-    if cycle.supply_pressure is not None:
-        level = v[f"{at}supply_pressure"]
+    assert design.duty is not None
     numbers = {
         "load_scale": v[at + ("torque_scale" if joint else "force_scale")],
         "time_scale": v[f"{at}time_scale"],
-        "level": level,
+        "level": level_of(v, design.duty, cycle),
         "arm": arm,
         "shift": shift,
     }
     if cycle.repeats is not None:
         numbers |= {key: v[at + key] for key in LIFE}
     return {f"{name}|{key}": value for key, value in numbers.items()}
+
+
+def level_of(v: Values, duty: DutySection, cycle: DutyCycle) -> Array:
+    """Supply pressure of a cycle [Pa]: the supply gives no more than its own pressure."""
+    most, path = v["supply.pressure"], duty.pressure_path(cycle)
+    return most if path == "supply.pressure" else minimum(v[path], most)
 
 
 def largest(value: Array) -> Array:
