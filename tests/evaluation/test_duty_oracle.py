@@ -318,7 +318,9 @@ def compare_supply(result, sums, cycles, found, u):
             result.add("wall temperature", face, value)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(
+    "seed", [*range(3), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 200))]
+)
 def test_a_second_program_finds_the_same(seed):
     """Every quantity of a random design and its cycles."""
     found = deviations(seed)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -145,6 +146,8 @@ class DutyStudy:
     """Largest opening of the valve that a cycle may need; None without a valve."""
     linkage: LinkageSize | None = None
     """Lengths of the linkage; None if no cycle moves it."""
+    films: Mapping[str, str] = field(default_factory=dict)
+    """Seals with an oil film, each with the trace of its friction, which is that of dry contact."""
 
     def to_dict(self) -> dict[str, Any]:
         """JSON data."""
@@ -210,6 +213,11 @@ def study(
         stroke=named["stroke"],
         opening_limit=named["opening_limit"] if models.plan.valve else None,
         linkage=linkage,
+        films={
+            ring.label: f"friction{i}"
+            for i, ring in enumerate(models.plan.rings)
+            if ring.element.friction_law.film is not None
+        },
     )
 
 
