@@ -500,7 +500,7 @@ def _requirements(
             | {key: {"$ref": f"#/definitions/{kind}"} for key in ("min", "max")},
         }
     limits = {"type": "object", "additionalProperties": False, "minProperties": 1}
-    limits["properties"] = texts | dict.fromkeys(("min", "max"), {"type": ["string", "number"]})
+    limits["properties"] = texts | {key: {"type": ["string", "number"]} for key in ("min", "max")}
     return {
         "description": "Limits that metrics must meet in the worst load case; METRIC[NAME]: in one "
         "load case or duty cycle.",

@@ -249,7 +249,7 @@ class PreparedDesign:
 
     @property
     def quantities(self) -> Mapping[str, Quantity]:
-        """All metrics of this design: those of the user, and those that it names for single cases."""
+        """All metrics of this design, with those of the user and those of single cases."""
         known = with_own(self.plugins)
         known.update({name: known[name] for name in self.of_cases})
         return known

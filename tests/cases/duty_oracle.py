@@ -10,7 +10,6 @@ from __future__ import annotations
 from math import exp, log, pi, sqrt
 
 import numpy as np
-from scipy.linalg import expm
 from scipy.optimize import fsolve
 
 AIR = 101325.0
@@ -78,7 +77,9 @@ def between(values, share):
     """Lagrange's parabola through values at 0, 1/2 and 1."""
     z = share
     return (
-        values[0] * (1 - 2 * z) * (1 - z) + values[1] * 4 * z * (1 - z) + values[2] * z * (2 * z - 1)
+        values[0] * (1 - 2 * z) * (1 - z)
+        + values[1] * 4 * z * (1 - z)
+        + values[2] * z * (2 * z - 1)
     )
 
 
@@ -94,9 +95,7 @@ def at_sample(u, p_s, v, force):
     out = v >= 0
     sign = 1.0 if out else -1.0
     driven, other = (u["area_a"], u["area_b"]) if out else (u["area_b"], u["area_a"])
-    feed, drain = (
-        (u["feed_a"], u["drain_b"]) if out else (u["feed_b"], u["drain_a"])
-    )
+    feed, drain = (u["feed_a"], u["drain_b"]) if out else (u["feed_b"], u["drain_a"])
     c = (other / driven) ** 2 * (feed / drain) ** 2
     drop = {
         side: sum(
@@ -294,7 +293,9 @@ def exchange(x, u, cycle, sums):
             for line in u["lines"]
             if line["chamber"] == side
         )
-        fresh += sum(max(0.0, u[f"area_{side}"] * sign * run - held) for run in runs if sign * run > 0)
+        fresh += sum(
+            max(0.0, u[f"area_{side}"] * sign * run - held) for run in runs if sign * run > 0
+        )
     return fresh / sums["duration"]
 
 
@@ -431,8 +432,10 @@ def means_of(names, sums, cycles, u, *, standby):
     time = moving + (standby or 0.0)
     total = {
         "speed": sum(weight[n] * sums[n]["way"] for n in names) / time,
-        "position": sum(weight[n] * sums[n]["duration"] * sums[n]["position"] for n in names) / moving,
-        "exchange": sum(weight[n] * sums[n]["duration"] * sums[n]["exchange"] for n in names) / time,
+        "position": sum(weight[n] * sums[n]["duration"] * sums[n]["position"] for n in names)
+        / moving,
+        "exchange": sum(weight[n] * sums[n]["duration"] * sums[n]["exchange"] for n in names)
+        / time,
     }
     volume = {n: sums[n]["swept"] for n in names}
     total["inlet"] = sum(weight[n] * volume[n] * sums[n]["inlet"] for n in names) / sum(
@@ -449,12 +452,3 @@ def means_of(names, sums, cycles, u, *, standby):
             / time
         )
     return total
-
-
-def after(start, time, matrix, heat, capacity):
-    """Temperatures after a time: exponential of the augmented matrix."""
-    n = len(heat)
-    system = np.zeros((n + 1, n + 1))
-    system[:n, :n] = -matrix / np.asarray(capacity)[:, None]
-    system[:n, n] = np.asarray(heat) / capacity
-    return (expm(system * time) @ np.append(start, 1.0))[:n]

@@ -12,8 +12,6 @@ from duty_case import LINKAGE
 import actuator_opt as ao
 from actuator_opt.evaluation.kernel import duty_numbers, duty_results, statics
 from actuator_opt.evaluation.limits import MetricArrays
-from actuator_opt.models import thermal_network
-from actuator_opt.models.thermal_network import OilNode, Surroundings, ThermalLayer, ThermalPart
 
 BAR = 1e5
 TOLERANCE = 1e-6
@@ -27,7 +25,8 @@ def wave(random, t, *, middle, size, waves=4):
     """A sum of sines over the period of `t`, repeated at its end."""
     u = (t - t[0]) / (t[-1] - t[0])
     parts = [
-        random.normal() / k * np.sin(2 * np.pi * (k * u + random.uniform())) for k in range(1, waves)
+        random.normal() / k * np.sin(2 * np.pi * (k * u + random.uniform()))
+        for k in range(1, waves)
     ]
     y = np.sum(parts, axis=0)
     y = middle + size * y / np.max(np.abs(y))
@@ -103,7 +102,8 @@ def random_design(seed):
                 f", {key}: {value!r}{'' if key.startswith('loss') else ' m'}"
                 for key, value in pipe.items()
             )
-            lines += f"  - {{chamber: {chamber}, type: pipe, material: steel_e355, rigid: true{sizes}, outer_diameter: 10 mm}}\n"
+            sizes += ", material: steel_e355, rigid: true, outer_diameter: 10 mm"
+            lines += f"  - {{chamber: {chamber}, type: pipe{sizes}}}\n"
         lines = f"lines:\n{lines}"
     tank = float(random.uniform(20, 80)) if random.uniform() < 0.5 else None
     supply = {
@@ -131,7 +131,8 @@ def random_design(seed):
         f"duty:\n  cycles:\n{bend}{press}  standby: {own['standby']!r} s\n{temperatures}"
         f"  ambient: {own['ambient']!r} K\n  air_speed: {own['air_speed']!r} m/s\n"
         f"  emissivity: {own['emissivity']!r}\n  thermal: {thermal}\n"
-        "  wear:\n    piston: {rate: 2e-17 m^2/N, depth: 0.1 mm}\n    rod: {rate: 3e-17 m^2/N, depth: 0.2 mm}\n"
+        "  wear:\n    piston: {rate: 2e-17 m^2/N, depth: 0.1 mm}\n"
+        "    rod: {rate: 3e-17 m^2/N, depth: 0.2 mm}\n"
         "  supply:\n"
         + "".join(f"    {key}: {float(x)!r}{units.get(key, '')}\n" for key, x in supply.items())
     )
@@ -147,10 +148,11 @@ def random_design(seed):
         "valve.rated_flow": f"{flows[0]} l/min",
         "valve.leakage_flow": f"{flows[1]} l/min",
     }
-    actuator = ao.read(text, set={k: v for k, v in changed.items()})
+    actuator = ao.read(text, set=changed)
     cycles = {"bend": walk, "press": hold}
     return actuator, cycles, own | {
-        "lines": pipes, "tank": tank, "supply_block": supply, "thermal_basis": thermal, "flows": flows,
+        "lines": pipes, "tank": tank, "supply_block": supply, "thermal_basis": thermal,
+        "flows": flows,
     }  # fmt: skip
 
 
@@ -186,6 +188,7 @@ def given_numbers(actuator, own):
     def material(name, *keys):
         return next(x for key in keys if (x := subject.numbers.get(f"materials.{name}.{key}")))
 
+    geometry = statics(subject, v, MetricArrays()).base.geometry
     k = "thermal_conductivity_through", "thermal_conductivity"
     oil = design.fluid.material
     u = own | {
@@ -203,7 +206,7 @@ def given_numbers(actuator, own):
             "specific_heat": material(oil, "specific_heat"), "conductivity": material(oil, *k),
         },
         "thermal": {
-            "wall_length": float(np.squeeze(statics(subject, v, MetricArrays()).base.geometry.wall_length)),
+            "wall_length": float(np.squeeze(geometry.wall_length)),
             "rod_diameter": rod, "rod_extension": design.rod.extension,
             "layers": [
                 {"thickness": x.thickness, "k": material(x.material, *k)}
@@ -222,6 +225,7 @@ class Deviations(dict):
     """Largest relative deviation by quantity."""
 
     def add(self, name, found, expected, scale=0.0):
+        """Count a value; `scale` bounds the size that the deviation is related to."""
         found = float(np.squeeze(found))
         if not np.isfinite(expected):
             error = 0.0 if found == expected else inf
@@ -257,6 +261,7 @@ def deviations(seed):
 
 def compare_cycle(result, name, course, sums, found, u):
     """Quantities of one cycle."""
+
     def metric(key, place=name):
         return found[f"duty_{key}"][place]
 

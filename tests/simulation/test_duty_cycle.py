@@ -173,7 +173,9 @@ def test_the_feed_forward_of_a_lapped_spool_begins_at_its_overlap():
     scene = Scenario(name="rise", design="knee.yaml", cycle="rise", duration=4.0)
     _, records = with_cycle(scene, subject)
     signal = next(x for (_, name), (_, x) in records.items() if name == "valve signal of rise")
-    cycle = next(x for x in ao.evaluate(DESIGNS / "knee_walking.yaml").duty.cycles if x.name == "rise")
+    cycle = next(
+        x for x in ao.evaluate(DESIGNS / "knee_walking.yaml").duty.cycles if x.name == "rise"
+    )
     assert np.max(np.abs(signal)) == pytest.approx(10 * cycle.traces["opening"].max(), rel=5e-3)
     moving = np.abs(signal[signal != 0])
     assert moving.min() < 0.02
