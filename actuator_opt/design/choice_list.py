@@ -18,7 +18,7 @@ from ..base.errors import Fault
 from ..base.quantities import Quantity
 from ..base.words import by_nearness
 from ..joints.kinds import JOINTS
-from .kinds import Fraction, MaterialName, Text, ValueFault, shape_in_words
+from .kinds import EntryName, Fraction, MaterialName, Text, ValueFault, shape_in_words
 from .material import ROLES
 from .model import Design, EndRetention
 from .paths import Target, resolve
@@ -35,25 +35,35 @@ MOST_COMBINATIONS = 1000
 """Largest number of combinations of all choices; the optimiser tries every combination."""
 
 
-def of_one_joint(design: Design) -> Design:
-    """A design without the keys and variables of `retention` that its joints do not use.
+def of_one_combination(design: Design) -> Design:
+    """A design without the keys and variables that its combination of choices does not use.
 
     A file that lists several types of joint under `choices` states the keys of all of them. A
-    combination of choices has one type at each end, so it needs only the keys of this type.
+    combination of choices has one type at each end, so it needs only the keys of this type. A level
+    of the supply pressure that no duty cycle uses is not a variable.
     """
+    if design.duty is not None:
+        used = {cycle.level for cycle in design.duty.cycles}
+        idle = {
+            f"duty.levels[{level.name}].pressure"
+            for level in design.duty.levels
+            if level.name not in used
+        }
+        variables = {path: x for path, x in design.variables.items() if path not in idle}
+        design = design.model_copy(update={"variables": variables})
     if design.retention is None:
         return design
     removed: set[str] = set()
     blocks: dict[str, EndRetention] = {}
     for name, end in design.retention.ends.items():
-        used = {field.key.partition(".")[0] for field in JOINTS[end.type].fields}
+        own = {field.key.partition(".")[0] for field in JOINTS[end.type].fields}
         unused = [
             key
             for key, field in EndRetention.model_fields.items()
-            if key not in used and not field.is_required() and getattr(end, key) != field.default
+            if key not in own and not field.is_required() and getattr(end, key) != field.default
         ]
         at = f"retention.{name}" if name else "retention"
-        removed |= {f"{at}.{key}" for key in EndRetention.model_fields if key not in used}
+        removed |= {f"{at}.{key}" for key in EndRetention.model_fields if key not in own}
         defaults = {key: EndRetention.model_fields[key].default for key in unused}
         blocks[name] = end.model_copy(update=defaults)
     retention = blocks.get("") or design.retention.model_copy(update=blocks)
@@ -122,7 +132,8 @@ def choosable(path: str, tree: Any) -> Target:
     remedy = "write the PATH of a part's number, material or type"
     if target.entry is None or target.entry.shape == "list" or len(target.loc) == 1:
         raise ValueFault("is not a value of an actuator part", remedy)
-    if isinstance(target.entry.kind, Text) and not isinstance(target.entry.kind, MaterialName):
+    kind = target.entry.kind
+    if isinstance(kind, Text) and not isinstance(kind, (MaterialName, EntryName)):
         raise ValueFault("is free text, so choosing it has no effect", remedy)
     if target.path != path:
         raise ValueFault("is not the canonical PATH", f"write {target.path}")

@@ -13,10 +13,12 @@ from pydantic import Field
 
 from .cycle_record import MOST_BYTES, CycleRecord, parse_cycle
 from .data_file import DataFile, DataFileName, as_read
-from .kinds import Boolean, CaseName, Choice, Label, Of, Section
+from .kinds import Boolean, CaseName, Choice, EntryName, Label, Of, Section
 
 MOST_CYCLES = 50
 """Largest number of cycles of a design (our choice)."""
+MOST_LEVELS = 10
+"""Largest number of levels of the supply pressure (our choice)."""
 
 ThermalBasis: TypeAlias = Annotated[
     Literal["worst", "mean"],
@@ -97,6 +99,10 @@ class DutyCycle(Section):
         float | None,
         Of("working_pressure", "supply pressure of this cycle; default: supply.pressure"),
     ] = None
+    level: Annotated[
+        str | None,
+        EntryName("level of duty.levels that supplies this cycle; default: supply.pressure"),
+    ] = None
     closed: Annotated[
         bool, Boolean("whether the cycle repeats, so that its last sample is its first")
     ] = True
@@ -126,6 +132,13 @@ class DutyCycle(Section):
         if samples is None:
             return file.parsed(cycle_of, closed=self.closed, ignore=self.ignore)
         return file.parsed(cycle_of, closed=self.closed, ignore=self.ignore, samples=samples)
+
+
+class SupplyLevel(Section):
+    """A supply pressure that several cycles may share, and that a choice may assign to a cycle."""
+
+    name: Annotated[str, CaseName("name of the level, for `level` of a cycle")]
+    pressure: Annotated[float, Of("working_pressure", "supply pressure of the level")]
 
 
 class Tank(Section):
@@ -209,6 +222,7 @@ class DutySection(Section):
     """Duty cycles of the actuator, and what their evaluation needs besides."""
 
     cycles: Annotated[tuple[DutyCycle, ...], Field(min_length=1, max_length=MOST_CYCLES)]
+    levels: Annotated[tuple[SupplyLevel, ...], Field(max_length=MOST_LEVELS)] = ()
     samples: Annotated[
         float | None,
         Of("sample_count", "least number of samples of a cycle, by its spline; default: the file"),
@@ -240,6 +254,12 @@ class DutySection(Section):
             for cycle in self.cycles
             for text in cycle.record.warnings
         ]
+
+    def pressure_path(self, cycle: DutyCycle) -> str:
+        """PATH of the supply pressure of a cycle: its own, that of its level, or that of all."""
+        if cycle.supply_pressure is not None:
+            return f"duty.cycles[{cycle.name}].supply_pressure"
+        return "supply.pressure" if cycle.level is None else f"duty.levels[{cycle.level}].pressure"
 
     def record(self, cycle: DutyCycle) -> CycleRecord:
         """The record of a cycle, with at least `samples` samples."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ..base.errors import Fault, InputError, shown
+from ..base.errors import Fault, InputError, remedy, shown
 from ..base.quantities import INPUTS
 from ..models import linkage as crank
 from .cycle_record import CycleRecord
@@ -16,6 +16,8 @@ from .structure import FileView, Loc, child, entries, without_effect
 
 CYCLES: Loc = ("duty", "cycles")
 """Location of the list of cycles in a design."""
+LEVELS: Loc = ("duty", "levels")
+"""Location of the list of levels of the supply pressure."""
 DEAD = 1e-3
 """Lever arm at a dead point, divided by the crank radius (our choice: force and speed are then off
 by a factor of a thousand)."""
@@ -88,13 +90,49 @@ def phases(view: FileView) -> Iterator[Fault]:
             yield from _without_effect(view, loc, ("phase", "also"), where)
 
 
+def levels(view: FileView) -> Iterator[Fault]:
+    """Check that levels have their own names, and that cycles and choices name one of them."""
+    seen: dict[str, str] = {}
+    for index, level in enumerate(view.items(*LEVELS)):
+        name = child(level, "name")
+        if isinstance(name, str) and name in seen:
+            message = f'"{shown(name)}": also the name of entry {seen[name]}'
+            yield Fault((*LEVELS, index, "name"), message, "give each level its own name")
+        elif isinstance(name, str):
+            seen[name] = str(index)
+    for index, cycle in enumerate(view.items(*CYCLES)):
+        loc, record = (*CYCLES, index), record_at(view, index)
+        key: Loc = ("choices", f"duty.cycles[{child(cycle, 'name')}].level")
+        own = [((*loc, "level"), view.value(*loc, "level"))]
+        named = [((*key, k), name) for k, name in enumerate(view.items(*key))]
+        for at, name in (*own, *named):
+            if isinstance(name, str) and name not in seen:
+                known = remedy(name, seen) or "add it to duty.levels"
+                yield Fault(at, f'"{shown(name)}" is not a level of duty.levels', known)
+        if not isinstance(own[0][1], str):
+            continue
+        if view.number(*loc, "supply_pressure") is not None:
+            yield Fault(
+                (*loc, "level"), "the cycle states supply_pressure too", "keep one of them",
+                at_key=True,
+            )  # fmt: skip
+        elif record is not None and record.supply_pressure is not None:
+            message = "the file has a column supply_pressure too"
+            fix = "remove the line, or list the column under ignore"
+            yield Fault((*loc, "level"), message, fix, at_key=True)
+
+
 def pressures(view: FileView) -> Iterator[Fault]:
     """Check that the pressures of cycles lie between return and supply pressure."""
     back, most = view.number("supply", "return_pressure"), view.number("supply", "pressure")
     if back is None or most is None or back >= most:
         return
+    for index in range(len(view.items(*LEVELS))):
+        loc: Loc = (*LEVELS, index, "pressure")
+        if (level := view.number(*loc)) is not None:
+            yield from _pressure(loc, "", level, level, (back, most))
     for index in range(len(view.items(*CYCLES))):
-        loc: Loc = (*CYCLES, index)
+        loc = (*CYCLES, index)
         stated, record = view.number(*loc, "supply_pressure"), record_at(view, index)
         column = None if record is None else record.supply_pressure
         if stated is not None:
@@ -172,6 +210,7 @@ CHECKS: tuple[Callable[[FileView], Iterator[Fault]], ...] = (
     names,
     columns,
     phases,
+    levels,
     pressures,
     dead_points,
     oil,

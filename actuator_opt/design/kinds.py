@@ -423,6 +423,12 @@ class CaseName(Text):
         return text
 
 
+class EntryName(CaseName):
+    """Name of an entry in another list of the file; unlike free text, a choice may change it."""
+
+    example = "low"
+
+
 class MaterialName(Text):
     """Name of a library material.
 

@@ -17,7 +17,7 @@ from ..base import errors, quantities, units
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.quantities import Quantity
-from ..metrics import METRICS, of_metric, term_of
+from ..metrics import METRICS, of_metric, split_case, term_of
 from .kinds import Fraction, Section, ValueFault
 from .model import Design
 from .structure import KeyEntry, Loc, blocks, child, child_at, entries, leaves, number_of
@@ -37,7 +37,7 @@ _TEXTS = ("waivers", "set")
 _TABLES = (*_ENDS, *_TEXTS, "requirements", "materials", "objective")
 
 
-NAMED_LISTS: tuple[Loc, ...] = (("load_cases",), ("duty", "cycles"))
+NAMED_LISTS: tuple[Loc, ...] = (("load_cases",), ("duty", "cycles"), ("duty", "levels"))
 """Lists whose entries PATHs give by name."""
 
 
@@ -213,7 +213,7 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
         allowed, key = quantities.MATERIAL_PROPERTIES, last
         if not name:
             raise ValueFault(f"{path}: unknown PATH", "write materials.NAME.PROPERTY")
-    if key not in allowed:
+    if (split_case(key)[0] if head == "requirements" else key) not in allowed:
         noun = "metric" if head == "requirements" else "material property"
         raise ValueFault(f'{path}: "{key}" is not a {noun}', errors.remedy(key, allowed))
     return Target(path, (head, name, last), allowed[key])
@@ -262,8 +262,8 @@ def words_of(path: str) -> str:
         return term_of(rest.rpartition(".")[0])
     if head.startswith("load_cases["):
         return f"{rest} {head[len('load_cases[') : -1]}".replace("_", " ")
-    if path.startswith("duty.cycles["):
-        name, _, key = path.removeprefix("duty.cycles[").partition("].")
+    if path.startswith(("duty.cycles[", "duty.levels[")):
+        name, _, key = path.partition("[")[2].partition("].")
         return f"{key} {name}".replace("_", " ").replace(".", " ")
     if head == "seals":
         place, _, name = rest.partition(".")

@@ -13,11 +13,12 @@ from typing import Any, get_args
 from ..base import errors, quantities
 from ..base.errors import Fault
 from ..base.quantities import Quantity
+from ..metrics import OF_LIFE, split_case
 from . import sizes
 from .kinds import Section, ValueFault, example, read_quantity, shape_in_words
 from .model import Design, Shape
 from .paths import Target, resolve
-from .structure import Loc, entries, number_of, value_at
+from .structure import Loc, child, child_at, entries, number_of, value_at
 from .uncertain import KEYS, NUMBERS, misfit, quantity_of_entry
 
 _LARGEST = {
@@ -47,14 +48,33 @@ def _number(block: dict[str, Any], loc: Loc, quantity: Quantity) -> Fault | None
     return None
 
 
+def _unknown(
+    name: object, tree: Mapping[str, Any], metrics: Mapping[str, Quantity]
+) -> tuple[str, str] | None:
+    """Message and remedy for a name that is no metric; None for METRIC or METRIC[CASE]."""
+    metric, case = split_case(str(name))
+    if metric not in metrics:
+        return f'"{errors.shown(name)}" is not a metric', errors.remedy(metric, metrics)
+    if case is None:
+        return None
+    if metric in OF_LIFE:
+        return f"{metric} is a value of all duty cycles together", f"write {metric}"
+    duty = metric.startswith("duty_")
+    found = child_at(tree, ("duty", "cycles") if duty else ("load_cases",))
+    known = [str(child(x, "name")) for x in found] if isinstance(found, (list, tuple)) else []
+    if case in known:
+        return None
+    noun = "duty cycle" if duty else "load case"
+    return f'"{errors.shown(case)}" is not a {noun}', errors.remedy(case, known)
+
+
 def requirements(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:
     """Check requirements: known metric, at least one limit, right unit, minimum below maximum."""
     block = tree.get("requirements")
     for metric, limit in block.items() if isinstance(block, dict) else ():
         loc = ("requirements", metric)
-        if metric not in metrics:
-            message = f'"{errors.shown(metric)}" is not a metric'
-            yield Fault(loc, message, errors.remedy(metric, metrics), at_key=True)
+        if unknown := _unknown(metric, tree, metrics):
+            yield Fault(loc, *unknown, at_key=True)
             continue
         quantity = limit_quantity(metrics[metric])
         if not isinstance(limit, dict):
@@ -257,22 +277,23 @@ def objective(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator
         terms = block[key]
         loc = ("objective", key)
         if isinstance(terms, str):
-            if terms not in metrics:
-                message = f'"{errors.shown(terms)}" is not a metric'
-                yield Fault(loc, message, errors.remedy(terms, metrics))
+            if unknown := _unknown(terms, tree, metrics):
+                yield Fault(loc, *unknown)
         elif isinstance(terms, dict):
-            yield from _weights(loc, terms, metrics)
+            yield from _weights(loc, terms, tree, metrics)
 
 
 def _weights(
-    loc: tuple[str, str], terms: dict[str, Any], metrics: Mapping[str, Quantity]
+    loc: tuple[str, str],
+    terms: dict[str, Any],
+    tree: Mapping[str, Any],
+    metrics: Mapping[str, Quantity],
 ) -> Iterator[Fault]:
     weight = replace(quantities.INPUTS["coefficient"], label="weight", upper=1e6)
     for metric in terms:
         fault = _number(terms, (*loc, metric), weight)
-        if metric not in metrics:
-            message = f'"{errors.shown(metric)}" is not a metric'
-            fault = Fault((*loc, metric), message, errors.remedy(metric, metrics), at_key=True)
+        if unknown := _unknown(metric, tree, metrics):
+            fault = Fault((*loc, metric), *unknown, at_key=True)
         elif terms[metric] == 0:
             fault = Fault((*loc, metric), "0: must be > 0", "write a weight, or remove the line")
         if fault is not None:

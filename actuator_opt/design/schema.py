@@ -234,6 +234,8 @@ def _snippet(entry: KeyEntry) -> Any:
     return entry.kind.example if entry.kind is not None else ""
 
 
+_OF_CASE = r"^\w+\[[^\[\]]+\]$"
+"""Pattern of a metric in one load case or duty cycle."""
 _REFERENCE = str.maketrans({"/": "_per_", "^": "", "*": "_", "%": "percent"})
 _LISTED = {"barrel.layup": 6, "rod.layup": 4, "lines": 2}
 """Number of entries in each list for which the editor offers PATHs under `variables`."""
@@ -497,10 +499,14 @@ def _requirements(
             "properties": texts
             | {key: {"$ref": f"#/definitions/{kind}"} for key in ("min", "max")},
         }
+    limits = {"type": "object", "additionalProperties": False, "minProperties": 1}
+    limits["properties"] = texts | {key: {"type": ["string", "number"]} for key in ("min", "max")}
     return {
-        "description": "Limits that metrics must meet in the worst load case.",
+        "description": "Limits that metrics must meet in the worst load case; METRIC[NAME]: in one "
+        "load case or duty cycle.",
         "additionalProperties": False,
         "properties": properties,
+        "patternProperties": {_OF_CASE: limits},
     }
 
 
@@ -513,11 +519,13 @@ def _objective(metrics: Mapping[str, Quantity]) -> Schema:
     goal = {
         "anyOf": [
             {"type": "string", "enum": list(metrics), "enumDescriptions": labels},
+            {"type": "string", "pattern": _OF_CASE},
             {
                 "type": "object",
                 "additionalProperties": False,
                 "minProperties": 1,
                 "properties": weights,
+                "patternProperties": {_OF_CASE: {"type": "number", "exclusiveMinimum": 0}},
             },
         ]
     }

@@ -27,7 +27,7 @@ from ..design.material import Material
 from ..design.materials import Library, load_library
 from ..design.model import Design
 from ..joints.kinds import OWN_KEYS
-from ..metrics import METRICS, MetricRow
+from ..metrics import METRICS, MetricRow, split_case
 from ..metrics.table import CHECKS
 from ..version import VERSION
 from . import (
@@ -302,6 +302,7 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
     duty = duty_study.study(subject, v, run)
     warnings = list(doubts.warnings(subject, v, run, duty))
     outside = {metric for metric, _ in warnings}
+    outside |= {name for name in subject.of_cases if split_case(name)[0] in outside}
     metrics = {name: _metric(name, computed, v, subject, outside) for name in subject.quantities}
     checks = tuple(_checks(design, computed, v, requirements, run.rings))
     warnings += [
@@ -379,8 +380,9 @@ def _metric(
     extremes = min(row[0] for row in rows), max(row[0] for row in rows)
     sense: quantities.Sense = "min" if value == extremes[0] else "max"
     pick = min if sense == "min" else max
+    metric, own_case = split_case(name)
     model = model_of(
-        name,
+        metric,
         wall=doubts.kind_of(subject),
         criterion=subject.design.barrel.criterion,
         place=place,
@@ -393,7 +395,7 @@ def _metric(
     return Metric(
         name=name,
         value=value,
-        case=None if case == ALL_CASES else case,
+        case=own_case if case == ALL_CASES else case,
         place=place or None,
         by_case=per_case,
         by_place=per_place,
@@ -439,7 +441,7 @@ def _requirement(limit: MetricLimit, computed: MetricArrays, v: Values) -> Requi
         value=float(row.value[0]),
         margin=margin,
         met=margin >= -TOLERANCE,
-        case=None if row.case == ALL_CASES else row.case,
+        case=split_case(limit.metric)[1] if row.case == ALL_CASES else row.case,
         place=row.place or None,
         path=limit.path or "",
     )

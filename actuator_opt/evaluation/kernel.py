@@ -7,7 +7,7 @@ computes oil damping, leakage, flow and line losses.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Mapping, Set as AbstractSet
 from dataclasses import field, replace
 
 import numpy as np
@@ -20,7 +20,7 @@ from ..design.material import Material
 from ..design.model import Design
 from ..friction.law import Friction
 from ..joints.joint import ENCLOSED
-from ..metrics.table import AT_STOPS
+from ..metrics.table import AT_STOPS, split_case
 from ..models import damping, elements, forces, lines, transmission_line
 from . import (
     barrel as barrel_module,
@@ -52,7 +52,7 @@ from .duty_cycles.numbers import Numbers, SamplePlan, stacked_numbers
 from .duty_cycles.results import CycleModels, results_in
 from .film_tables import FilmTable, Key, Running
 from .geometry import Geometry
-from .limits import ENDS, MaterialValues, MetricArrays, by_case, margin
+from .limits import ALL_CASES, ENDS, MaterialValues, MetricArrays, by_case, margin
 from .plugin import Plugin, with_own
 from .rings import Ring
 from .rod_strength import Beam
@@ -249,8 +249,16 @@ class PreparedDesign:
 
     @property
     def quantities(self) -> Mapping[str, Quantity]:
-        """All metrics of this design, including those of the user."""
-        return with_own(self.plugins)
+        """All metrics of this design, with those of the user and those of single cases."""
+        known = with_own(self.plugins)
+        known.update({name: known[name] for name in self.of_cases})
+        return known
+
+    @property
+    def of_cases(self) -> tuple[str, ...]:
+        """Metrics of single load cases or duty cycles that objectives and requirements name."""
+        stated = (*self.design.objective.metrics, *self.design.requirements, *self.aims)
+        return tuple(name for name in dict.fromkeys(stated) if split_case(name)[1] is not None)
 
     @property
     def cases(self) -> tuple[str, ...]:
@@ -453,12 +461,14 @@ def _lands(v: Values, design: Design, g: Geometry, rod: RodSection, out: MetricA
             out.skip(name, "no plug in the bore")
 
 
-def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = None) -> ModelRun:
+def compute(subject: PreparedDesign, v: Values, wanted: AbstractSet[str] | None = None) -> ModelRun:
     """Compute all metrics of the designs in `v`; invalid designs give NaN.
 
     If `wanted` is stated, costly metrics that it does not contain may be left out.
     """
     design = subject.design
+    if wanted is not None:
+        wanted = wanted | {split_case(name)[0] for name in subject.of_cases}
     with np.errstate(all="ignore"):
         out = MetricArrays()
         s = statics(subject, v, out)
@@ -470,6 +480,8 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
         )
         places = motion.compute(v, design, linear, wanted, out)
         _duty(subject, v, s, out)
+        for name in subject.of_cases:
+            _of_case(name, v.cases, out)
         for plugin in subject.plugins:
             plugin_value = plugin.call(v, out.metrics, lenient=subject.lenient)
             out.metrics[plugin.name] = {"": plugin_value.value}
@@ -490,6 +502,25 @@ def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = 
         places=places,
         mass_parts=s.mass_parts,
     )
+
+
+def _of_case(name: str, cases: tuple[str, ...], out: MetricArrays) -> None:
+    """Record a metric in a single load case, or along a single duty cycle."""
+    metric, case = split_case(name)
+    found: dict[str, Array] = {}
+    for place, array in out.metrics.get(metric, {}).items():
+        own, _, rest = place.partition(", ")
+        if case in cases:
+            values = dict(by_case(out, metric, array, cases, place))
+            value = values.get(str(case), values.get(ALL_CASES))
+            if value is not None:
+                found[place] = value
+        elif own == case:
+            found[rest] = array
+    if found:
+        out.metrics[name] = found
+    else:
+        out.skip(name, out.why.get(metric, f"{metric} has no value of its own for {case}"))
 
 
 def duty_numbers(subject: PreparedDesign, v: Values) -> tuple[CycleModels, Array]:

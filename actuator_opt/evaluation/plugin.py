@@ -25,7 +25,7 @@ from ..base.errors import Diagnostic, InputError, remedy, shown
 from ..base.numeric import Array, maximum, minimum
 from ..base.quantities import Quantity
 from ..base.units import BASE, UnitError, unit
-from ..metrics import METRICS
+from ..metrics import METRICS, Quantities
 from .values import Values
 
 _MARK = "_actuator_opt_plugin"
@@ -158,7 +158,7 @@ class Plugin:
 
 def with_own(plugins: Iterable[Plugin]) -> dict[str, Quantity]:
     """Quantities of all metrics by name: built-in metrics and user metrics."""
-    return {**METRICS, **{plugin.name: plugin.quantity for plugin in plugins}}
+    return Quantities({**METRICS, **{plugin.name: plugin.quantity for plugin in plugins}})
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from math import pi
 from types import MappingProxyType
 
@@ -597,10 +598,40 @@ ROWS = table((
 # fmt: on
 """Declaration of every metric, by name."""
 
+_OF_CASE = re.compile(r"(\w+)\[([^\[\]]+)\]")
+
+
+def split_case(name: str) -> tuple[str, str | None]:
+    """Metric, and the load case or duty cycle whose value is meant; None: the worst of all.
+
+    >>> split_case("friction_running[swing]"), split_case("mass")
+    (('friction_running', 'swing'), ('mass', None))
+    """
+    found = _OF_CASE.fullmatch(name)
+    return (found[1], found[2]) if found else (name, None)
+
+
+class Quantities(dict[str, Quantity]):
+    """Quantities of metrics by name; ``METRIC[CASE]`` has that of its metric, and its own label."""
+
+    def __missing__(self, name: str) -> Quantity:
+        """The quantity of a metric in a single case."""
+        metric, case = split_case(name)
+        if case is None or metric not in self:
+            raise KeyError(name)
+        return replace(self[metric], name=name, label=f"{self[metric].label}, {case}")
+
+
 METRICS: Mapping[str, Quantity] = MappingProxyType(
-    {name: row.quantity for name, row in ROWS.items()}
+    Quantities({name: row.quantity for name, row in ROWS.items()})
 )
 """The quantity of every metric."""
+
+OF_LIFE = frozenset((
+    "duty_fatigue", "duty_sliding", "duty_wear", "duty_wear_share", "duty_gas_volume",
+    "duty_tank_temperature", "system_mass",
+))  # fmt: skip
+"""Metrics of all duty cycles together, which have no value for a single cycle."""
 
 CHECKS: tuple[tuple[MetricRow, CheckLine], ...] = tuple(
     sorted(
@@ -638,6 +669,9 @@ def term_of(name: str) -> str:
     >>> term_of("buckling_factor"), term_of("seal_gap"), term_of("yield_factor")
     ('buckling', 'seal gap', 'working stress')
     """
+    metric, case = split_case(name)
+    if case is not None:
+        return f"{term_of(metric)}, {case}"
     row = ROWS.get(name)
     if row is None:
         return of_metric(name).label
@@ -654,4 +688,7 @@ def is_safety(name: str) -> bool:
 
 def of_metric(name: str) -> Quantity:
     """Quantity (label, dimension, unit) of a metric; for an undeclared name, a plain ratio."""
-    return METRICS.get(name) or Quantity(name, "", "ratio", "", name.replace("_", " "))
+    try:
+        return METRICS[name]
+    except KeyError:
+        return Quantity(name, "", "ratio", "", name.replace("_", " "))

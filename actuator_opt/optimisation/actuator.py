@@ -22,7 +22,7 @@ from ..base.numeric import STEP, Array, namespace, real, where
 from ..base.quantities import Sense
 from ..base.symbolic.recorded import RecordedFunction
 from ..design import with_values
-from ..design.choice_list import of_one_joint
+from ..design.choice_list import of_one_combination
 from ..design.material import Material
 from ..design.materials import Library
 from ..evaluation import PreparedDesign, compute, prepare
@@ -59,7 +59,7 @@ def variant(subject: PreparedDesign, values: Mapping[str, Any], library: Library
     InputError
         the values contradict the design or each other
     """
-    design = of_one_joint(
+    design = of_one_combination(
         with_values(subject.design, dict(values), materials=library, metrics=subject.quantities)
     )
     names = names_of_materials(design)
@@ -393,7 +393,7 @@ def build(
         the design has no variables, or a variable that no model reads
     """
     if subject.design.choices:
-        subject = replace(subject, design=of_one_joint(subject.design))
+        subject = replace(subject, design=of_one_combination(subject.design))
     subject = replace(subject, windows=True)
     design = subject.design
     if not design.variables:

@@ -21,6 +21,7 @@ from ..design.model import Objective
 from ..evaluation import Evaluation, PreparedDesign, compute, evaluate
 from ..evaluation.build import spec_hash
 from ..evaluation.kernel import governing
+from ..metrics import split_case
 from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
 from .front.front import Front, FrontSettings, NoAnchor, front
 from .front.objectives import Objectives
@@ -203,7 +204,7 @@ class ParetoFront(Displayed):
         return result | ({} if infeasibility is None else {"infeasibility": asdict(infeasibility)})
 
 
-def wishes(texts: Sequence[str], quantities: dict[str, Quantity]) -> tuple[Wish, ...]:
+def wishes(texts: Sequence[str], quantities: Mapping[str, Quantity]) -> tuple[Wish, ...]:
     """Parse objectives of the form ``METRIC:min`` or ``METRIC:max``.
 
     Raises
@@ -217,7 +218,7 @@ def wishes(texts: Sequence[str], quantities: dict[str, Quantity]) -> tuple[Wish,
         if not colon or sense not in ("min", "max"):
             message = f'objective "{text}" is not of the form METRIC:min or METRIC:max'
             raise UsageError(Diagnostic(message, 'write e.g. "mass:min"'))
-        if metric not in quantities:
+        if split_case(metric)[0] not in quantities:
             message = f'objective "{text}": there is no metric {metric}'
             raise UsageError(Diagnostic(message, remedy(metric, quantities)))
         earlier = next((wish for wish in objectives if wish.metric == metric), None)
@@ -268,7 +269,7 @@ def pareto(
     cluster : workers for independent searches (see `front`)
     """
     began = time.perf_counter()
-    wished = wishes(objectives, dict(subject.quantities))
+    wished = wishes(objectives, subject.quantities)
     if not FRONT.least <= count <= FRONT.most:
         message = f"-n {count}: a front has {FRONT.least} to {FRONT.most} designs"
         raise UsageError(Diagnostic(message, "choose a number between them"))
@@ -293,7 +294,13 @@ def _problem(
     ------
     InputError, UsageError : an objective is undefined or constant
     """
-    present = compute(subject, subject.values()).computed
+    wish_all = Objective(minimise={w.metric: 1.0 for w in wished})
+    weighted = replace(
+        subject,
+        design=subject.design.model_copy(update={"objective": wish_all}),
+        aims={w.metric: w.sense for w in wished},
+    )
+    present = compute(weighted, subject.values()).computed
     for wish in wished:
         if not present.metrics.get(wish.metric):
             reason = present.why.get(wish.metric, "it does not apply to this design")
@@ -301,12 +308,6 @@ def _problem(
             raise UsageError(
                 Diagnostic(message, "choose a metric that `evaluate` lists with a value")
             )
-    wish_all = Objective(minimise={w.metric: 1.0 for w in wished})
-    weighted = replace(
-        subject,
-        design=subject.design.model_copy(update={"objective": wish_all}),
-        aims={w.metric: w.sense for w in wished},
-    )
     goals = tuple(
         Goal({w.metric: 1.0}, {w.metric: 1.0}, 1.0 if w.sense == "min" else -1.0) for w in wished
     )

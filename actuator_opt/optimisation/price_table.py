@@ -272,7 +272,7 @@ def _active_limits(actuator: ActuatorProblem, solution: Solution) -> set[str]:
 
 def _quantity(actuator: ActuatorProblem, path: str) -> Quantity:
     if path.startswith("requirements."):
-        return actuator.subject.quantities[path.split(".")[1]]
+        return actuator.subject.quantities[path.removeprefix("requirements.").rpartition(".")[0]]
     return input_quantity(path, actuator.subject.design)
 
 

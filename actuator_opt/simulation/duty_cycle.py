@@ -22,6 +22,7 @@ from ..base.quantities import INPUTS, Quantity
 from ..design.cycle_record import CycleRecord
 from ..design.duty import DutyCycle
 from ..design.model import Design, Load
+from ..design.paths import get
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import (
     Controller,
@@ -67,8 +68,10 @@ def plant_of(scenario: Scenario, actuator: Plant, *, loaded: bool) -> Plant:
     cycle = cycle_of(scenario, actuator.design)
     if cycle is None:
         return actuator
-    if cycle.supply_pressure is not None:
-        actuator = replace(actuator, supply_pressure=cycle.supply_pressure)
+    assert actuator.design.duty is not None
+    level = get(actuator.design, actuator.design.duty.pressure_path(cycle))
+    assert isinstance(level, float)
+    actuator = replace(actuator, supply_pressure=level)
     if loaded:
         return actuator
     load = actuator.design.load
@@ -152,12 +155,27 @@ def _signal(valve: ValveData, traces: Mapping[str, Array]) -> Array:
     """Signal of the valve for the quasi-static opening; the full signal past stall [V]."""
     extending = traces["speed"] >= 0
     side = np.where(extending, 1.0, -1.0)
-    start = np.where(extending, valve.start(1.0), valve.start(-1.0))
+    start = _start(valve, extending)
     opening = np.nan_to_num(traces["opening"], nan=1.0, posinf=1.0)
     opening = np.clip(opening, 0.0, 1.0)
     start = np.where(opening > 0, start, 0.0)
     signal: Array = valve.offset + side * (start + opening * (valve.signal - start))
     return signal
+
+
+def _start(valve: ValveData, extending: Array) -> Array:
+    """Signal from the centre at which the open edges have passed their overlap [V].
+
+    `ValveData.start` adds the clearance of edges that leak; the opening of a cycle begins earlier.
+    """
+    spool = valve.metering
+    if spool is None:
+        return np.zeros(np.shape(extending))
+    out, back = (
+        valve.signal * spool.signal_share(max(0.0, *(float(edge.overlap) for edge in edges)))
+        for edges in ((spool.supply_a, spool.b_tank), (spool.a_tank, spool.supply_b))
+    )
+    return np.where(extending, out, back)
 
 
 class _Repeated(NamedTuple):
@@ -402,5 +420,5 @@ def _opening(actuator: Plant, window: _Window, signals: Mapping[str, Array]) -> 
     valve = actuator.valve
     assert valve is not None
     spool = window.of(signals["spool"]) - valve.offset
-    start = np.where(spool >= 0, valve.start(1.0), valve.start(-1.0))
+    start = _start(valve, spool >= 0)
     return float(np.max(np.maximum(np.abs(spool) - start, 0.0) / (valve.signal - start)))

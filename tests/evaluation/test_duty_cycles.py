@@ -9,6 +9,7 @@ import pytest
 from actuator_opt.design.cycle_record import read_cycle
 from actuator_opt.evaluation.duty_cycles.numbers import SamplePlan
 from actuator_opt.evaluation.duty_cycles.results import CycleModels, Place
+from actuator_opt.evaluation.duty_cycles.samples import leakage_at_rest, sample
 
 BAR = 1e5
 CYCLES = Path(__file__).parents[2] / "designs" / "cycles"
@@ -43,6 +44,14 @@ def results(text: str, *, linkage: bool = False, **changed: float) -> dict[Place
     return dict(zip(models.places, map(float, rows), strict=True))
 
 
+def at_sample(data: dict[str, float], *, linkage: bool = False, **changed: float):
+    """Results of a single sample of the example."""
+    plan = SamplePlan(frozenset(), True, (), (), (), {})
+    u = numbers(**changed)
+    u |= {key.removeprefix("walk|"): x for key, x in u.items()}
+    return sample(plan, u, data, linked=linkage)
+
+
 def of(results: dict[Place, float], name: str) -> list[float]:
     """All values of a result."""
     return [value for place, value in results.items() if place.name == name]
@@ -67,6 +76,42 @@ def test_the_energies_of_five_samples_are_those_of_the_source():
     for name, value in expected.items():
         assert found[Place("walk", name)] == pytest.approx(value, rel=1e-5), name
     assert found[Place("walk", "work_in")] == 0.0
+    efficiency = found[Place("walk", "work_out")] / found[Place("walk", "supply_energy")]
+    assert efficiency == pytest.approx(0.0511506, rel=1e-5)
+
+
+def test_a_sample_of_the_linkage_is_that_of_the_source():
+    """Flexed by 20 degrees at 2 rad/s under 27 N m."""
+    data = {"motion": math.radians(-20), "load": 27.0, "rate": -2.0}
+    found = at_sample(data, linkage=True)
+    expected = {"arm": 0.0569956, "position": 0.0758191, "speed": -0.113991, "force": 473.721}
+    for name, value in expected.items():
+        assert found[name] == pytest.approx(value, rel=5e-6), name
+    assert found["position"] + 0.192 == pytest.approx(0.267819, rel=5e-6)
+
+
+@pytest.mark.parametrize(
+    ("force", "speed", "opening", "reserve", "needed"),
+    [(1000.0, 0.38, 0.475707, 5464.91, 7.84661e6), (-500.0, -0.4, 0.602988, 2882.28, 10.8060e6)],
+)
+def test_opening_and_reserve_of_a_sample_are_those_of_the_source(
+    force: float, speed: float, opening: float, reserve: float, needed: float
+):
+    """Both directions, at 90 % of the valve."""
+    data = {"motion": 0.05, "load": force, "rate": speed}
+    found = at_sample(data, opening_limit=0.9)
+    assert found["opening"] == pytest.approx(opening, rel=5e-6)
+    assert found["reserve"] == pytest.approx(reserve, rel=5e-6)
+    assert found["needed"] == pytest.approx(needed, rel=5e-6)
+
+
+def test_leakage_of_a_sample_is_that_of_the_source():
+    """0.2 l/min at 50 bar an edge: coefficient, leakage against 1000 N, and power at rest."""
+    assert LEAK["feed_a.leak_root"] == pytest.approx(1.49071e-9, rel=5e-6)
+    found = at_sample({"motion": 0.05, "load": 1000.0, "rate": 0.1}, **LEAK)
+    assert found["leakage"] == pytest.approx(9.42802e-6, rel=5e-6)
+    plan = SamplePlan(frozenset(), True, (), (), (), {})
+    assert 210 * BAR * leakage_at_rest(plan, numbers(**LEAK)) == pytest.approx(200.449, rel=5e-6)
 
 
 def test_the_gait_of_a_knee_is_that_of_the_source():
@@ -94,8 +139,23 @@ def test_the_gait_of_a_knee_is_that_of_the_source():
     assert mean == pytest.approx(5.45825e-5, rel=1e-5)
     assert min(of(found, "position_min")) == pytest.approx(32.5207e-3, rel=1e-5)
     assert max(of(found, "position_max")) == pytest.approx(94.067e-3, rel=1e-5)
+    efficiency = found[Place("walk", "work_out")] / found[Place("walk", "supply_energy")]
+    assert efficiency == pytest.approx(0.00377007, rel=1e-5)
     rest = found[Place("", "rest_leakage")]
     assert rest == pytest.approx(9.54521e-6, rel=1e-5)
+
+
+def test_the_traces_of_the_gait_have_the_extremes_of_the_source():
+    """Least reserve at sample 64; forces, and the largest speed."""
+    plan = SamplePlan(frozenset(["walk"]), True, (), (), (), {})
+    values = numbers(other_friction=250.0)
+    record = read_cycle((CYCLES / "gait_knee.csv").read_text())
+    models = CycleModels(plan, {"walk": record}, tuple(values))
+    track = models.tracks(np.array([*values.values()])[:, None])["walk"]
+    assert np.argmin(track.real("reserve")) == 64
+    force = track.real("force")
+    assert (force.min(), force.max()) == pytest.approx((-532.963, 512.698), rel=5e-6)
+    assert np.abs(track.real("speed")).max() == pytest.approx(0.380186, rel=5e-6)
 
 
 def test_the_energy_of_the_supply_is_that_of_all_parts_of_the_split():

@@ -12,7 +12,12 @@ from duty_case import knee
 import actuator_opt as ao
 from actuator_opt.design.cycle_record import read_cycle
 from actuator_opt.evaluation.duty_cycles.study import CycleStudy, DutyStudy
-from actuator_opt.evaluation.duty_cycles.validity import AFFECTED, content_frequency, warnings
+from actuator_opt.evaluation.duty_cycles.validity import (
+    AFFECTED,
+    RUBBING,
+    content_frequency,
+    warnings,
+)
 
 
 def cycle(position, period=2.0, *, closed=True, samples=200) -> CycleStudy:
@@ -81,4 +86,44 @@ def test_a_design_does_not_warn_of_a_slow_cycle():
     """Four times as slow, the gait has 1.14 Hz, below 4.31/3 Hz."""
     slow = _walking("4")
     assert not [text for text in slow.warnings if "too fast" in text]
-    assert slow.metrics["duty_pressure_min"].in_range
+    assert slow.metrics["duty_supply_share"].in_range
+
+
+def test_a_design_warns_where_leakage_governs_the_lowest_pressure():
+    """Shortly before the reversal the valve leaks 31 % of the flow; a tight one is fine."""
+    walking = _walking("4")
+    (sentence,) = [text for text in walking.warnings if "of the flow is leakage" in text]
+    worst = walking.duty.cycles[0].worst["pressure_a"]
+    traces = walking.duty.cycles[0].traces
+    share = traces["leakage"][worst.sample] / traces["flow"][worst.sample]
+    assert f"{share:.0%} of the flow" in sentence
+    assert f"at {worst.time:.3g} s" in sentence
+    assert "run actuator-opt simulate FILE --cycle walk" in sentence
+    assert not walking.metrics["duty_suction_ratio"].in_range
+    tight = ao.evaluate(knee(valve__leakage_flow="0 l/min",
+                             piston__leakage_conductance="0 ml/min/bar",
+                             variables__piston__leakage_conductance=None))  # fmt: skip
+    assert not [text for text in tight.warnings if "of the flow is leakage" in text]
+
+
+def test_friction_of_film_seals_is_said_to_be_dry():
+    """With the share of these seals in the friction energy of the cycle."""
+    study = _walking("1").duty
+    assert study.films == {}
+    study = replace(study, films={"rod seal": "friction1"})
+    found = [pair for pair in warnings(study, {}, valve=True) if pair[0] in RUBBING]
+    traces = study.cycles[0].traces
+    means = [(y[1:] + y[:-1]) / 2 for y in (traces["friction1"], traces["friction"])]
+    rod, both = (np.sum(mean * np.abs(np.diff(traces["position"]))) for mean in means)
+    assert [metric for metric, _ in found] == list(RUBBING)
+    for _, sentence in found:
+        assert sentence.startswith("walk: rod seal with an oil film")
+        assert f"{rod / both:.0%} of the friction energy" in sentence
+
+
+@pytest.mark.long
+def test_a_design_with_a_film_says_so():
+    """The film's own friction costs seconds for each speed; a cycle has many."""
+    found = ao.evaluate(knee(seals__rod__friction="film"))
+    assert found.duty.films == {"rod seal": "friction1"}
+    assert not found.metrics["duty_friction_energy"].in_range

@@ -65,6 +65,26 @@ def test_a_limit_over_time_binds_at_an_exact_optimum(actuator: ao.Actuator) -> N
     assert dear
 
 
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("design", "objective"),
+    [
+        ("knee_walking", "mass"),
+        ("knee_walking", "duty_supply_energy"),
+        ("knee_walking", "duty_supply_energy[walk]"),
+        ("knee_walking", "system_mass"),
+        ("flight_control", "mass"),
+    ],
+)
+def test_the_optimality_conditions_hold_in_the_worked_designs(design: str, objective: str) -> None:
+    """Their residual is below 1e-6."""
+    actuator = ao.read(ROOT / "designs" / f"{design}.yaml", set={"objective.minimise": objective})
+    optimum = ao.optimise(actuator, starts=1, prices=False)
+    assert optimum.status == "optimal"
+    assert optimum.kkt is not None
+    assert optimum.kkt.residual < 1e-6
+
+
 def test_slopes_of_fatigue_and_wear_are_those_of_differences(actuator: ao.Actuator) -> None:
     """All results of the cycles, in three directions of all numbers at once, for two designs."""
     subject = actuator.subject()

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cli_runner import run
-from duty_case import GAIT, knee, text, wave
+from duty_case import DESIGNS, GAIT, knee, text, wave
 
 import actuator_opt as ao
 from actuator_opt.design.scenario.model import Scenario
@@ -132,6 +132,53 @@ def test_the_energy_of_a_walking_knee_agrees_within_2_percent():
     rows = {row.name: row for row in found.cycle.rows}
     for name in ("duty_work_out", "duty_work_in", "duty_friction_energy", "duty_flow_peak"):
         assert abs(rows[name].difference) < 0.02, name
+
+
+PEAKS = 0.05
+"""Difference of peaks up to which both models agree; of pressures as a share of the supply's."""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("design", "cycle"),
+    [
+        ("knee_walking", "walk"),
+        ("knee_walking", "run"),
+        ("knee_walking", "rise"),
+        ("flight_control", "manoeuvre and gust"),
+    ],
+)
+def test_the_simulation_of_a_shipped_cycle_agrees_or_is_warned_of(design, cycle):
+    """Energy within 2 %; peaks within 5 %, or the quasi-static metric says that it is doubtful."""
+    trial = ao.cycle_scenario(DESIGNS / f"{design}.yaml", cycle)
+    found = ao.simulate(trial)
+    assert abs(found.cycle.difference) < AGREEMENT
+    metrics = ao.evaluate(trial.actuator).metrics
+    supply = trial.actuator.design.supply.pressure
+    apart = {}
+    for row in found.cycle.rows:
+        scale = supply if "pressure" in row.name else abs(row.quasi_static)
+        apart[row.name] = abs(row.simulated - row.quasi_static) / scale
+    peaks = ("flow_peak", "power_peak", "power_absorbed", "pressure_min", "pressure_max", "opening")
+    for name in (f"duty_{peak}" for peak in peaks):
+        assert apart[name] < PEAKS or not metrics[name].in_range, (name, apart[name])
+    if cycle == "walk":
+        assert max(apart[f"duty_{peak}"] for peak in peaks) < PEAKS
+
+
+@pytest.mark.long
+def test_the_feed_forward_of_a_lapped_spool_begins_at_its_overlap():
+    """An edge with clearance and without lap opens from the centre on: no jump at a reversal."""
+    subject = ao.read(DESIGNS / "knee_walking.yaml").subject()
+    scene = Scenario(name="rise", design="knee.yaml", cycle="rise", duration=4.0)
+    _, records = with_cycle(scene, subject)
+    signal = next(x for (_, name), (_, x) in records.items() if name == "valve signal of rise")
+    cycle = next(
+        x for x in ao.evaluate(DESIGNS / "knee_walking.yaml").duty.cycles if x.name == "rise"
+    )
+    assert np.max(np.abs(signal)) == pytest.approx(10 * cycle.traces["opening"].max(), rel=5e-3)
+    moving = np.abs(signal[signal != 0])
+    assert moving.min() < 0.02
 
 
 SCENE = """\

@@ -13,12 +13,13 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from ...base.dataclass import dataclass
-from ...base.numeric import Array, array_of, maximum, namespace, sqrt
+from ...base.numeric import Array, array_of, maximum, minimum, namespace, sqrt
 from ...design.cycle_record import CycleRecord
-from ...design.duty import DutyCycle
+from ...design.duty import DutyCycle, DutySection
 from ...design.model import Design
 from ...joints.joint import Life
 from ...models import friction, lines, rod
+from ...models.lapped_spool import LappedSpool
 from ...models.metering_spool import MeteringSpool, spool_flows
 from .. import circuit, piston_nut, rings as rings_module, rod_strength, sealing, spool
 from ..barrel import SEAL_STEP, Wall
@@ -42,8 +43,13 @@ LIFE = ("repeats", "starts")
 STRESS = ("span", "offset", "slope", "ultimate", "limit", "limit_cycles")
 """Numbers of a part of metal: range of its stress under the full pulse of its load, offset and
 slope of its mean stress, tensile strength, fatigue strength, and the cycles of that strength."""
-EDGES = ("feed_a", "feed_b", "drain_a", "drain_b")
-"""Edges from supply to chamber A and B, and from A and B to the return line."""
+EDGES = {"feed_a": "supply_a", "feed_b": "supply_b", "drain_a": "a_tank", "drain_b": "b_tank"}
+"""Edges from supply to chamber A and B, and from A and B to the return line, with their names in
+`MeteringSpool`."""
+LAP = ("overlap", "area_gradient", "clearance", "rounding")
+"""Numbers of an edge of a lapped spool, see `lapped_spool.SpoolEdge`."""
+SPOOL = ("stroke", "density", "dynamic_viscosity", "flow_coefficient")
+"""Numbers of a lapped spool, see `lapped_spool.LappedSpool`."""
 
 
 History = Literal["a", "b", "middle", "rod"]
@@ -84,6 +90,8 @@ class SamplePlan:
     parts: tuple[FatiguePart, ...]
     unknown: Mapping[str, str]
     """Parts that are not assessed for fatigue, with the reason."""
+    lapped: bool = False
+    """Whether the leakage is that of a lapped spool at its position."""
 
 
 def collect(
@@ -124,8 +132,10 @@ def collect(
         for key in ("base_radius", "crank_radius", "angle_offset"):
             numbers[key] = v[f"linkage.{key}"]
     resting = _at_rest(v, design, stock, state)
+    lapped = False
     if design.valve is not None:
-        numbers |= _edges(v, design, resting)
+        edges, lapped = _edges(v, design, resting)
+        numbers |= edges
     for i, _ in enumerate(design.lines):
         for key in ("inner_diameter", "length", "loss_coefficient"):
             numbers[f"line{i}.{key}"] = v[f"lines[{i}].{key}"]
@@ -134,13 +144,13 @@ def collect(
         numbers["dynamic_viscosity"] = _flat(resting.dynamic_viscosity)
     seals = _seals(v, design, stock, g, resting, wall, sections, supply, numbers)
     parts, unknown = _fatigue(v, design, stock, g, wall, sections, loaded_joints, supply, numbers)
-    connected = tuple((line.chamber, i) for i, line in enumerate(design.lines))
+    lined = tuple((line.chamber, i) for i, line in enumerate(design.lines))
     linked = frozenset(
         cycle.name
         for cycle in design.duty.cycles
         if cycle.lever_arm is None and design.duty.record(cycle).joint
     )
-    plan = SamplePlan(linked, design.valve is not None, connected, seals, parts, unknown)
+    plan = SamplePlan(linked, design.valve is not None, lined, seals, parts, unknown, lapped)
     return plan, numbers
 
 
@@ -156,19 +166,23 @@ def _cycle(
         arm = v[f"{at}lever_arm"]
         low, high = record.motion.min(), record.motion.max()
         shift = g.stroke / 2 - arm * (low + high) / 2
-    level = v["supply.pressure"]
-    if cycle.supply_pressure is not None:
-        level = v[f"{at}supply_pressure"]
+    assert design.duty is not None
     numbers = {
         "load_scale": v[at + ("torque_scale" if joint else "force_scale")],
         "time_scale": v[f"{at}time_scale"],
-        "level": level,
+        "level": level_of(v, design.duty, cycle),
         "arm": arm,
         "shift": shift,
     }
     if cycle.repeats is not None:
         numbers |= {key: v[at + key] for key in LIFE}
     return {f"{name}|{key}": value for key, value in numbers.items()}
+
+
+def level_of(v: Values, duty: DutySection, cycle: DutyCycle) -> Array:
+    """Supply pressure of a cycle [Pa]: the supply gives no more than its own pressure."""
+    most, path = v["supply.pressure"], duty.pressure_path(cycle)
+    return most if path == "supply.pressure" else minimum(v[path], most)
 
 
 def largest(value: Array) -> Array:
@@ -211,25 +225,34 @@ def _at_rest(v: Values, design: Design, stock: MaterialValues, state: LoadState)
     )
 
 
-def _edges(v: Values, design: Design, resting: LoadState) -> Numbers:
-    """Coefficients of the open edges, and leakage of the shut edges by a law of two terms.
+def _edges(v: Values, design: Design, resting: LoadState) -> tuple[Numbers, bool]:
+    """Coefficients of the open edges, and leakage of the shut edges; whether the spool is lapped.
 
-    A shut edge leaks q = G dp + K sqrt(dp), through its flows at half and at all of the pressure
-    between supply and return.
+    With the spool centred, a shut edge leaks q = G dp + K sqrt(dp), through its flows at half and
+    at all of the pressure between supply and return. Edges of a lapped spool state their law too:
+    they leak less, the farther the spool laps them.
     """
-    lapped = circuit.metering_spool(v, design, resting)
-    if lapped is None:
-        edges = spool.course_edges(circuit.of_valve(v), viscosity=resting.kinematic_viscosity)
-        numbers = {name: _flat(edges.rated) for name in EDGES}
+    metering = circuit.metering_spool(v, design, resting)
+    if metering is None:
+        course = spool.course_edges(circuit.of_valve(v), viscosity=resting.kinematic_viscosity)
+        numbers = {name: _flat(course.rated) for name in EDGES}
         numbers |= {
-            f"{name}.leak_root": _flat(edges.supply if "feed" in name else edges.tank)
+            f"{name}.leak_root": _flat(course.supply if "feed" in name else course.tank)
             for name in EDGES
         }
-        return numbers | {f"{name}.leak_linear": 0.0 for name in EDGES}
-    return _lapped_edges(lapped, v["valve.signal"], v["supply.pressure"])
+        return numbers | {f"{name}.leak_linear": 0.0 for name in EDGES}, False
+    numbers = _metering_edges(metering, v["valve.signal"], v["supply.pressure"])
+    if not isinstance(metering, LappedSpool):
+        return numbers, False
+    edges = {name: getattr(metering, edge) for name, edge in EDGES.items()}
+    if any(edge.clearance is None for edge in edges.values()):
+        return numbers, False
+    for name, edge in edges.items():
+        numbers |= {f"{name}.{key}": _flat(getattr(edge, key)) for key in LAP}
+    return numbers | {f"spool.{key}": _flat(getattr(metering, key)) for key in SPOOL}, True
 
 
-def _lapped_edges(lapped: MeteringSpool, signal: Array, supply: Array) -> Numbers:
+def _metering_edges(metering: MeteringSpool, signal: Array, supply: Array) -> Numbers:
     numbers: Numbers = {}
     half = 0.5 * supply
 
@@ -239,7 +262,7 @@ def _lapped_edges(lapped: MeteringSpool, signal: Array, supply: Array) -> Number
             zip(
                 ("feed_a", "feed_b", "drain_a", "drain_b"),
                 spool_flows(
-                    spool=lapped,
+                    spool=metering,
                     signal=value,
                     supply_pressure=2 * drop,
                     return_pressure=0.0 * drop,

@@ -196,7 +196,8 @@ def _fatigue(duty: DutyStudy, model: _Model) -> _Lack:
 def _candidates(metric: str, cycle: DutyCycle, design: Design) -> Iterator[Candidate]:
     """Numbers that may cure a check of one cycle."""
     own = f"duty.cycles[{cycle.name}]."
-    level = f"{own}supply_pressure" if cycle.supply_pressure is not None else "supply.pressure"
+    assert design.duty is not None
+    level = design.duty.pressure_path(cycle)
     if metric != "duty_stroke_margin":
         yield Candidate(level, "a supply pressure", 1.0, 3.0)
         if metric == "duty_supply_share":

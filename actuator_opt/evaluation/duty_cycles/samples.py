@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.dataclass import dataclass
-from ...base.numeric import Array, absolute, maximum, real, sqrt, where
+from ...base.numeric import Array, absolute, maximum, minimum, real, sqrt, where
 from ...base.symbolic.recorded import RecordedFunction
-from ...models import lines, linkage, quasi_static, wear
-from .numbers import SamplePlan
+from ...models import lapped_edge, lines, linkage, quasi_static, wear
+from .numbers import LAP, SPOOL, SamplePlan
 
 PASSES = 2
 """Passes for friction, which depends on the pressures, and pressures, which depend on friction."""
@@ -74,7 +74,8 @@ def sample(
     )
     a, b = balance.a, balance.b
     driven, other = where(move.extending, a, b), where(move.extending, b, a)
-    leak = _leakage(plan, u, move, supply, driven, other)
+    opening = _opening(move, balance.edge_drop) if plan.valve else 0.0
+    leak = _leakage(plan, u, move, supply, driven, other, opening)
     results = {
         "position": position,
         "arm": arm,
@@ -96,7 +97,7 @@ def sample(
         results["pulse_a"], results["pulse_b"] = a / u["supply"], b / u["supply"]
         results["pulse_rod"] = -move.force / u["rod_pulse"]
     if plan.valve:
-        results["opening"] = _opening(move, balance.edge_drop)
+        results["opening"] = opening
     for i, part in enumerate(balance.frictions):
         contact = _parabola(u, f"seal{i}.contact", _sealed(plan, i, a, b))
         results[f"friction{i}"] = part
@@ -331,12 +332,15 @@ def _leakage(
     supply: Array,
     driven: Array,
     other: Array,
+    opening: Array,
 ) -> Array:
     """Leakage that the supply feeds: past the two shut edges, and across the piston."""
     across = u["piston_leakage"] * absolute(driven - other)
     if not plan.valve:
         return across
-    out = move.extending
+    out, drops = move.extending, (supply - other, driven - u["drain"])
+    if plan.lapped:
+        return _lapped_leakage(u, out, opening, *drops) + across
 
     def edge(extending: str, retracting: str, drop: Array) -> Array:
         driving = maximum(drop, 0.0)
@@ -348,8 +352,29 @@ def _leakage(
         )
         return linear * driving + turbulent * root
 
-    into = edge("feed_b", "feed_a", supply - other)
-    return into + edge("drain_a", "drain_b", driven - u["drain"]) + across
+    return edge("feed_b", "feed_a", drops[0]) + edge("drain_a", "drain_b", drops[1]) + across
+
+
+def _lapped_leakage(
+    u: Mapping[str, Array], extending: Array, opening: Array, feed_drop: Array, drain_drop: Array
+) -> Array:
+    """Flow past both shut edges of a lapped spool, which laps them farther as it opens the others.
+
+    The spool moves from where the feeding edge uncovers its port, in proportion to the opening.
+    """
+    start = where(extending, u["feed_a.overlap"], u["feed_b.overlap"])
+    place = start + minimum(opening, 1.0) * (u["spool.stroke"] - start)
+    oil = {key: u[f"spool.{key}"] for key in SPOOL if key != "stroke"}
+    flow: Array = 0.0
+    for out, back, drop in (
+        ("feed_b", "feed_a", feed_drop),
+        ("drain_a", "drain_b", drain_drop),
+    ):
+        shut = {key: where(extending, u[f"{out}.{key}"], u[f"{back}.{key}"]) for key in LAP}
+        flow = flow + lapped_edge.lapped_edge_flow(
+            uncovered=-place - shut.pop("overlap"), pressure_drop=maximum(drop, 0.0), **shut, **oil
+        )
+    return flow
 
 
 def leakage_at_rest(plan: SamplePlan, u: Mapping[str, Array]) -> Array:

@@ -290,6 +290,8 @@ class DutyStudy:
     """Temperatures over time, under every cycle or the mean of all; empty if they are not known."""
     shortfalls: tuple[Shortfall, ...] = ()
     """Checks that the cycles miss, with reasons and cures."""
+    films: Mapping[str, str] = field(default_factory=dict)
+    """Seals with an oil film, each with the trace of its friction, which is that of dry contact."""
 
     def to_dict(self) -> dict[str, Any]:
         """JSON data."""
@@ -358,6 +360,11 @@ def study(
         stroke=named["stroke"],
         opening_limit=named["opening_limit"] if models.plan.valve else None,
         linkage=linkage,
+        films={
+            ring.label: f"friction{i}"
+            for i, ring in enumerate(models.plan.rings)
+            if ring.element.friction_law.film is not None
+        },
     )
 
 

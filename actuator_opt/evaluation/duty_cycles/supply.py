@@ -11,6 +11,7 @@ from ...design.model import Design
 from ...models import accumulator, fluid, supply_sizing
 from ..limits import MetricArrays
 from ..values import Values
+from .numbers import level_of
 from .results import Place
 
 PRECHARGE = 0.9
@@ -116,7 +117,8 @@ class _Sizes:
         return reduce(maximum, powers.values())
 
     def _level(self, name: str) -> Array:
-        return self._v.get(f"duty.cycles[{name}].supply_pressure", self._v["supply.pressure"])
+        (cycle,) = (cycle for cycle in self._duty.cycles if cycle.name == name)
+        return level_of(self._v, self._duty, cycle)
 
     @property
     def gas_volume(self) -> Array | None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from ...base.numeric import over_travel
 from ...base.quantities import INPUTS
 from ...design.cycle_record import spline
 from ...models import wear
@@ -27,14 +28,26 @@ AFFECTED = (
     "duty_pressure_max",
     "duty_suction_ratio",
     "duty_flow_peak",
+    "duty_power_peak",
+    "duty_power_absorbed",
 )
 """Metrics that a quasi-static model gets wrong when a cycle is too fast."""
+LEAKING = 0.1
+"""Share of the flow that leaks, from which it shifts the pressures (our choice: a tenth of the flow
+is a fifth of a pressure drop)."""
+LOWEST = ("duty_pressure_min", "duty_suction_ratio")
+"""Metrics of the lowest pressure."""
+RUBBING = ("duty_friction_energy", "duty_seal_temperature", "duty_temperature_margin")
+"""Metrics that follow from the friction of the seals."""
 
 
 def warnings(
     study: DutyStudy, frequencies: Mapping[str, float], *, valve: bool
 ) -> Iterator[tuple[str, str]]:
-    """Yield (metric, sentence) for every cycle that is too fast for the quasi-static model.
+    """Yield (metric, sentence) for every cycle on which the quasi-static model is doubtful.
+
+    It is too fast, or its lowest pressure occurs where the valve leaks more than the piston takes,
+    or its seals have an oil film, whose friction the model does not compute.
 
     Parameters
     ----------
@@ -42,6 +55,9 @@ def warnings(
     frequencies : natural frequency, bandwidth and so on in words, each with its value [Hz]
     valve : whether the design has a valve, which a simulation needs
     """
+    for cycle in study.cycles:
+        yield from _at_leakage(cycle, valve=valve)
+        yield from _dry_friction(cycle, study.films)
     known = {words: value for words, value in frequencies.items() if value > 0}
     if not known:
         return
@@ -51,9 +67,7 @@ def warnings(
         content = content_frequency(cycle)
         if content <= SLOW * known[lowest]:
             continue
-        run = f"actuator-opt simulate FILE --cycle '{cycle.name}'"
-        if cycle.name.isalnum():
-            run = run.replace("'", "")
+        run = _simulation(cycle)
         remedy = f"run {run}" if valve else f"add valve and run {run}"
         for metric in AFFECTED:
             yield (
@@ -78,6 +92,46 @@ def short_strokes(study: DutyStudy) -> Iterator[tuple[str, str]]:
                 f"({length.text(short.shorter_than, 3)}): they carry no fresh oil into the "
                 "contact, and the wear law does not show this; if they are noise, smooth the file",
             )
+
+
+def _simulation(cycle: CycleStudy) -> str:
+    """The command that simulates a cycle."""
+    name = cycle.name if cycle.name.isalnum() else f"'{cycle.name}'"
+    return f"actuator-opt simulate FILE --cycle {name}"
+
+
+def _at_leakage(cycle: CycleStudy, *, valve: bool) -> Iterator[tuple[str, str]]:
+    """Warn if the valve leaks much of the flow where the pressure of a cycle is lowest."""
+    if not valve or not cycle.worst:
+        return
+    chamber = min(("pressure_a", "pressure_b"), key=lambda name: cycle.worst[name].value)
+    worst = cycle.worst[chamber]
+    leakage, flow = (float(cycle.traces[key][worst.sample]) for key in ("leakage", "flow"))
+    if not leakage > LEAKING * flow:
+        return
+    for metric in LOWEST:
+        yield (
+            metric,
+            f"{cycle.name}: at {worst.time:.3g} s, {leakage / flow:.0%} of the flow is leakage, "
+            "which brings the pressures of both chambers closer together; the lowest pressure, "
+            f"{INPUTS['pressure'].text(worst.value, 3)}, leaves this out: run {_simulation(cycle)}",
+        )
+
+
+def _dry_friction(cycle: CycleStudy, films: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Warn of friction of seals with an oil film, which is computed as that of dry contact."""
+    total = cycle.energies.get("friction_energy", 0.0)
+    if not films or not total > 0:
+        return
+    x = cycle.traces["position"]
+    dry = sum(float(over_travel(cycle.traces[trace], x)) for trace in films.values())
+    for metric in RUBBING:
+        yield (
+            metric,
+            f"{cycle.name}: {' and '.join(films)} with an oil film: friction along a duty cycle is "
+            "that of dry contact with the friction coefficient of the seal, "
+            f"{dry / total:.0%} of the friction energy",
+        )
 
 
 def content_frequency(cycle: CycleStudy) -> float:
