@@ -285,7 +285,7 @@ int @name@_gradients(const double *inputs, double *outputs, double *gradients, d
     double *V = work, *D = work + @NAME@_VALUES_WORK;
     start(&DESIGN, inputs, V);
     for (int k = 0; k < T * T; k++) D[k] = k % (T + 1) == 0;
-    dual(DESIGN.code, DESIGN.count, DESIGN.extra, V, D, T);
+    dual(DESIGN.code, DESIGN.count, DESIGN.extra, V, D, T, 1);
     const int outside = finished(V, outputs);
     for (int k = 0; k < @NAME@_OUTPUTS; k++)
         for (int t = 0; t < T; t++) {

@@ -5,6 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#if defined(__GNUC__)
+#define VECTORS
+#pragma GCC diagnostic ignored "-Wpsabi" /* vectors are passed to inline functions only */
+#endif
 #include "machine.h"
 
 #define TEXT(name, result) #name,
@@ -143,7 +147,7 @@ static int run_slopes(
     const Program *p, const Points *x, int T, const int32_t *varies, double *results
 ) {
     /* several lanes, if there are enough points and all slots stay in fast memory */
-    const Py_ssize_t L = x->count < 4 || T == 4 || p->slots * T > MOST_SLOPES ? 1 : BLOCK;
+    const Py_ssize_t L = x->count < 4 || T == 4 || p->slots * T > MOST_SLOPES ? 1 : FOUR;
     double *V = calloc(L * (p->slots + p->constant_count), sizeof(double));
     double *D = calloc(L * p->slots * T, sizeof(double));
     const Dual computed = dual_of(T, L);

@@ -28,13 +28,6 @@
 #endif
 #endif
 
-/* A result may stand in the slot of its operand, but lanes and directions do not mix. */
-#if defined(__GNUC__) && !defined(__CUDACC_RTC__)
-#define APART _Pragma("GCC ivdep")
-#else
-#define APART
-#endif
-
 /* Operations with their results, computed from operands a, b and c. */
 #define OPERATIONS(X) \
     X(add, a + b) X(sub, a - b) X(mul, a * b) X(div, a / b) X(neg, -a) X(sqrt, sqrt(a)) \
@@ -218,7 +211,7 @@ FUNCTION void roots_of(const uint16_t *at, const double *p, double *R, size_t st
 
 #define VALUES(name, result) \
     case OP_##name: \
-        APART for (int l = 0; l < L; l++) { \
+        for (int l = 0; l < L; l++) { \
             const double a = A[l], b = B[l], c = C[l]; \
             (void)b, (void)c, R[l] = (result); \
         } \
@@ -241,98 +234,132 @@ INLINE void value_of(const uint16_t *at, const int32_t *extra, double *V, const 
 
 /* ---- derivatives ---- */
 
-enum { BLOCK = 4 }; /* most lanes with derivatives */
-#define LANES_OF APART for (int l = 0; l < L; l++)
-#define ALONG for (int t = 0; t < T; t++) LANES_OF
+/* Numbers that are handled together: with VECTORS, of compilers that have them, four lanes or four
+   directions; otherwise one. */
+#if defined(VECTORS)
+typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
+typedef long long Mask __attribute__((vector_size(32)));
+enum { FOUR = 4 };
+#define AT(x, l) ((x)[l])
+INLINE Four same(double x) { return (Four){x, x, x, x}; }
+INLINE Four chosen(Four a, Four b, Four c) {
+    const Mask yes = a != same(0.0);
+    return (Four)(((Mask)b & yes) | ((Mask)c & ~yes));
+}
+#else
+typedef double Four;
+enum { FOUR = 1 };
+#define AT(x, l) (x)
+INLINE Four same(double x) { return x; }
+INLINE Four chosen(Four a, Four b, Four c) { return a != 0 ? b : c; }
+#endif
+
+/* Values of a slot in L lanes, FOUR or 1. */
+INLINE Four read_values(const double *V, const int L) {
+    return L == 1 ? same(V[0]) : *(const Four *)V;
+}
+INLINE void write_values(double *V, Four x, const int L) {
+    if (L == 1) V[0] = AT(x, 0);
+    else *(Four *)V = x;
+}
+
+#define ALONG for (int k = 0; k < T * L / FOUR; k++)
 
 /* r' = f a' + g b', where an operand without derivatives counts as constant */
 INLINE void combined(
-    double *R, const double *A, const double *B, const double *f, const double *g, int flags,
-    const int T, const int L
+    Four *R, const Four *A, const Four *B, Four f, Four g, int flags, const int T, const int L
 ) {
-    if ((flags & (FIRST | SECOND)) == (FIRST | SECOND))
-        ALONG R[t * L + l] = f[l] * A[t * L + l] + g[l] * B[t * L + l];
-    else if (flags & FIRST) ALONG R[t * L + l] = f[l] * A[t * L + l];
-    else ALONG R[t * L + l] = g[l] * B[t * L + l];
+    if ((flags & (FIRST | SECOND)) == (FIRST | SECOND)) ALONG R[k] = f * A[k] + g * B[k];
+    else if (flags & FIRST) ALONG R[k] = f * A[k];
+    else ALONG R[k] = g * B[k];
 }
 
-#define SLOPE(name, first) case OP_##name: LANES_OF f[l] = (first); break;
-#define SLOPES(name, first, second) case OP_##name: LANES_OF f[l] = (first), g[l] = (second); break;
+#define SLOPES(name, first, second) \
+    case OP_##name: \
+        for (int l = 0; l < (L < FOUR ? L : FOUR); l++) { \
+            const double a = AT(p, l), b = AT(q, l), r = V[at[1] * (size_t)L + l]; \
+            (void)a, (void)b, (void)r; \
+            AT(f, l) = (first), AT(g, l) = (second); \
+        } \
+        break;
+#define SLOPE(name, first) SLOPES(name, first, 0.0)
 
-/* Compute the value and derivatives of every instruction's result, along T directions in L lanes. */
+/* Compute the value and derivatives of every instruction's result, along T directions in L lanes:
+   L is 1 or FOUR, T a multiple of FOUR. */
 INLINE void dual(
     const uint16_t *code, ptrdiff_t count, const int32_t *extra, double *V, double *D,
     const int T, const int L
 ) {
-    double a[BLOCK], b[BLOCK], f[BLOCK], g[BLOCK] = {0};
-    for (ptrdiff_t k = 0; k < count; k++) {
-        const uint16_t *at = code + WORDS * k;
+    const size_t size = (size_t)T * L;
+    for (ptrdiff_t n = 0; n < count; n++) {
+        const uint16_t *at = code + WORDS * n;
         const int flags = FLAGS(at), operation = OPERATION(at);
         if (!(flags & RESULT)) {
             value_of(at, extra, V, L);
             continue;
         }
-        double *r = V + (size_t)at[1] * L, *R = D + (size_t)at[1] * T * L;
-        const double *A = D + (size_t)at[2] * T * L, *B = D + (size_t)at[3] * T * L;
-        LANES_OF a[l] = V[(size_t)at[2] * L + l], b[l] = V[(size_t)at[3] * L + l];
+        double *r = V + (size_t)at[1] * L;
+        const Four p = read_values(V + (size_t)at[2] * L, L);
+        const Four q = read_values(V + (size_t)at[3] * L, L);
+        Four *R = (Four *)(D + at[1] * size), f = same(1.0), g = f;
+        const Four *A = (const Four *)(D + at[2] * size), *B = (const Four *)(D + at[3] * size);
         switch (operation) { /* the most frequent operations first, in one step */
             case OP_mul:
-                LANES_OF r[l] = a[l] * b[l];
-                combined(R, A, B, b, a, flags, T, L);
+                write_values(r, p * q, L);
+                combined(R, A, B, q, p, flags, T, L);
                 continue;
             case OP_add:
-                LANES_OF r[l] = a[l] + b[l], f[l] = 1.0;
-                combined(R, A, B, f, f, flags, T, L);
+                write_values(r, p + q, L);
+                combined(R, A, B, f, g, flags, T, L);
                 continue;
             case OP_sub:
-                LANES_OF r[l] = a[l] - b[l], f[l] = 1.0, g[l] = -1.0;
-                combined(R, A, B, f, g, flags, T, L);
+                write_values(r, p - q, L);
+                combined(R, A, B, f, -g, flags, T, L);
                 continue;
-            case OP_div:
-                LANES_OF r[l] = a[l] / b[l], f[l] = 1.0 / b[l], g[l] = -r[l] / b[l];
-                combined(R, A, B, f, g, flags, T, L);
+            case OP_div: {
+                const Four ratio = p / q;
+                write_values(r, ratio, L);
+                combined(R, A, B, f / q, -ratio / q, flags, T, L);
                 continue;
+            }
             case OP_where: {
-                const double *c = V + (size_t)at[4] * L, *C = D + (size_t)at[4] * T * L;
-                LANES_OF r[l] = a[l] != 0 ? b[l] : c[l];
-                if ((flags & SECOND) && (flags & THIRD))
-                    ALONG R[t * L + l] = a[l] != 0 ? B[t * L + l] : C[t * L + l];
-                else if (flags & SECOND) ALONG R[t * L + l] = a[l] != 0 ? B[t * L + l] : 0.0;
-                else ALONG R[t * L + l] = a[l] != 0 ? 0.0 : C[t * L + l];
+                const Four *C = (const Four *)(D + at[4] * size), zero = same(0.0);
+                write_values(r, chosen(p, q, read_values(V + (size_t)at[4] * L, L)), L);
+                if ((flags & SECOND) && (flags & THIRD)) ALONG R[k] = chosen(p, B[k], C[k]);
+                else if (flags & SECOND) ALONG R[k] = chosen(p, B[k], zero);
+                else ALONG R[k] = chosen(p, zero, C[k]);
                 continue;
             }
             default: break;
         }
         value_of(at, extra, V, L);
         switch (operation) {
-            SLOPES(pow, b[l] * pow(a[l], b[l] - 1.0), flags & SECOND ? r[l] * log(a[l]) : 0.0)
-            SLOPES(atan2, b[l] / (a[l] * a[l] + b[l] * b[l]), -a[l] / (a[l] * a[l] + b[l] * b[l]))
-            SLOPES(hypot, a[l] / r[l], b[l] / r[l])
+            SLOPES(pow, b * pow(a, b - 1.0), flags & SECOND ? r * log(a) : 0.0)
+            SLOPES(atan2, b / (a * a + b * b), -a / (a * a + b * b))
+            SLOPES(hypot, a / r, b / r)
+            SLOPE(copysign, signbit(a) == signbit(b) ? 1.0 : -1.0)
             SLOPE(neg, -1.0)
-            SLOPE(sqrt, 0.5 / r[l])
-            SLOPE(exp, r[l])
-            SLOPE(expm1, exp(a[l]))
-            SLOPE(log, 1.0 / a[l])
-            SLOPE(log1p, 1.0 / (1.0 + a[l]))
-            SLOPE(sin, cos(a[l]))
-            SLOPE(cos, -sin(a[l]))
-            SLOPE(tan, 1.0 + r[l] * r[l])
-            SLOPE(tanh, 1.0 - r[l] * r[l])
-            SLOPE(sinh, cosh(a[l]))
-            SLOPE(cosh, sinh(a[l]))
-            SLOPE(arctan, 1.0 / (1.0 + a[l] * a[l]))
-            SLOPE(arcsin, 1.0 / sqrt(1.0 - a[l] * a[l]))
-            SLOPE(arccos, -1.0 / sqrt(1.0 - a[l] * a[l]))
-            SLOPE(abs, sign_of(a[l]))
-            SLOPE(cbrt, 1.0 / (3.0 * r[l] * r[l]))
-            case OP_copysign:
-                LANES_OF f[l] = signbit(a[l]) == signbit(b[l]) ? 1.0 : -1.0;
-                combined(R, A, B, f, f, flags & ~SECOND, T, L);
-                continue;
+            SLOPE(sqrt, 0.5 / r)
+            SLOPE(exp, r)
+            SLOPE(expm1, exp(a))
+            SLOPE(log, 1.0 / a)
+            SLOPE(log1p, 1.0 / (1.0 + a))
+            SLOPE(sin, cos(a))
+            SLOPE(cos, -sin(a))
+            SLOPE(tan, 1.0 + r * r)
+            SLOPE(tanh, 1.0 - r * r)
+            SLOPE(sinh, cosh(a))
+            SLOPE(cosh, sinh(a))
+            SLOPE(arctan, 1.0 / (1.0 + a * a))
+            SLOPE(arcsin, 1.0 / sqrt(1.0 - a * a))
+            SLOPE(arccos, -1.0 / sqrt(1.0 - a * a))
+            SLOPE(abs, sign_of(a))
+            SLOPE(cbrt, 1.0 / (3.0 * r * r))
             default: /* steps: their slope is zero */
-                ALONG R[t * L + l] = 0.0;
+                ALONG R[k] = same(0.0);
                 continue;
         }
-        combined(R, A, B, f, g, flags, T, L);
+        if (L == 1) f = same(AT(f, 0)), g = same(AT(g, 0));
+        combined(R, A, B, f, g, operation == OP_copysign ? FIRST : flags, T, L);
     }
 }
