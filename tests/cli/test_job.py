@@ -216,7 +216,14 @@ def _reported():
     for kind in results.KINDS.values():
         name = kind.type.rpartition(":")[2]
         if kind.report:
-            slow = name in ("Optimisation", "Simulation", "Rerun", "Calibrated")
+            slow = name in (
+                "Optimisation",
+                "Simulation",
+                "Rerun",
+                "Calibrated",
+                "Identification",
+                "Run",
+            )
             yield pytest.param(name, marks=[pytest.mark.long] if slow else [])
 
 

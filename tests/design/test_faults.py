@@ -213,6 +213,7 @@ def test_no_standard_input():
         assert "standard input is closed" in done.stderr
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.name == "nt", reason="an open folder is not deleted there")
 def test_a_working_directory_that_is_gone(tmp_path):
     """What needs none works; the rest says so."""
