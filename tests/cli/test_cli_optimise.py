@@ -234,6 +234,7 @@ VARIABLES = {
 }
 
 
+@pytest.mark.long
 def test_any_dimension_may_move():
     """Every kind of number can be a variable, all at once, and stays within its bounds."""
     lines = [

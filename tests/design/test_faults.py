@@ -199,6 +199,7 @@ def test_a_home_that_nobody_has(place):
     assert "the run was not recorded" in swept.err
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.name == "nt", reason="needs a POSIX shell")
 def test_no_standard_input():
     """`-` where the shell has closed it."""

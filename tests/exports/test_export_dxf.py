@@ -13,7 +13,7 @@ from itertools import combinations, pairwise
 import pytest
 from cli_runner import DESIGNS, bench, block
 from hypothesis import given, strategies as st
-from test_export_step import FITTED_ROD, SHIPPED, VARIANTS
+from test_export_step import EACH, FITTED_ROD, VARIANTS
 
 import actuator_opt as ao
 from actuator_opt.exports.dxf import DrawingSizes, Length, dxf, layer_name, rows
@@ -98,7 +98,7 @@ def swept(lines):
     return total * 1e-9
 
 
-@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EACH, ids=lambda path: path.stem)
 def test_swept_sections_weigh_what_the_mass_model_says(path):
     """What the lines of a part's layer sweep is its mass (Pappus)."""
     actuator = ao.read(path)
@@ -167,7 +167,7 @@ def check_nothing_overlaps(document):
         assert area[1] > parts.extmax.y or area[3] < parts.extmin.y, one
 
 
-@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EACH, ids=lambda path: path.stem)
 def test_nothing_overlaps_in_shipped_designs(path):
     """By the boxes of ezdxf's fonts."""
     check_nothing_overlaps(shipped(path)[1])

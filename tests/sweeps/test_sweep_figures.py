@@ -305,6 +305,7 @@ def test_without_a_feasible_design_the_results_are_still_told(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.long
 def test_a_reduced_sweep_computes_what_is_shown(knee, tmp_path):
     """--reduce leaves metrics out, but for those of the figures; contours need no kept rows."""
     swept = ao.sweep(
