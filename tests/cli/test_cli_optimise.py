@@ -84,17 +84,19 @@ def test_the_saved_design_repeats_the_optimum(tmp_path):
     ("objective", "better"),
     [
         ("maximise: stiffness_min", lambda d, b: d["stiffness_min"] >= b["stiffness_min"]),
-        (
+        pytest.param(
             "minimise: friction_running",
             lambda d, b: d["friction_running"] <= b["friction_running"] * (1 + 1e-9),
+            marks=pytest.mark.long,
         ),
         (
             "minimise:\n    mass: 1\n    friction_running: 0.5",
             lambda d, b: d["friction_running"] <= b["friction_running"] * (1 + 1e-6),
         ),
-        (
+        pytest.param(
             "maximise:\n    stiffness_min: 1\n    burst_factor: 0.5",
             lambda d, b: d["stiffness_min"] >= b["stiffness_min"] * (1 - 1e-6),
+            marks=pytest.mark.long,
         ),
     ],
 )
