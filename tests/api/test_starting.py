@@ -65,6 +65,7 @@ def test_a_start_meets_its_limits_on_one_page(duty):
         assert variable.lower <= variable.start <= variable.upper, path
 
 
+@pytest.mark.long
 def test_other_goals_weigh_little_more_than_the_lightest(monkeypatch):
     """Friction falls below that of the lightest, and the mass stays within its limit."""
     starts, solved = [], starting._solved

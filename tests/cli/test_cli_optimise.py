@@ -272,6 +272,7 @@ def test_what_cannot_move(path, bounds):
     assert refused(text, command="optimise") == faults
 
 
+@pytest.mark.long
 def test_tiny_and_wide_bounds(plain):
     """Bounds a hair apart, and as wide as the quantity allows, are searched all the same."""
     tight = ("    lower: 20 mm\n    upper: 30 mm", "    lower: 22 mm\n    upper: 22.000001 mm")

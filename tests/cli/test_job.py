@@ -221,6 +221,7 @@ def _reported():
                 "Simulation",
                 "Rerun",
                 "Calibrated",
+                "Prices",
                 "Identification",
                 "Run",
             )

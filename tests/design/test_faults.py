@@ -64,6 +64,7 @@ def test_its_traceback(broken, words, monkeypatch, capsys):
         assert lines[-1].startswith("internal error of")
 
 
+@pytest.mark.long
 def test_debug_changes_no_report(tmp_path):
     """What --debug prints more is no part of a result."""
     for words in ((), ("--debug",)):

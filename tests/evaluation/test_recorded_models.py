@@ -60,7 +60,8 @@ def rows(values, count):
     return np.concatenate([np.broadcast_to(values.objective, (1, count)), values.constraints])
 
 
-SLOW = ("huang_110_80_560", "knee_walking")  # oil films and cycles of many samples take seconds
+SLOW = ("huang_110_80_560", "knee_walking")
+"""Oil films and cycles of many samples take seconds."""
 
 
 @pytest.mark.parametrize(

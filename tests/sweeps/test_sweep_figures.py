@@ -289,6 +289,7 @@ def test_a_metric_without_values_is_told(swept, tmp_path):
     assert not (tmp_path / "figures").exists()
 
 
+@pytest.mark.long
 def test_without_a_feasible_design_the_results_are_still_told(tmp_path):
     """The command prints the sweep, then one line; in JSON both in one object."""
     command = [sys.executable, "-m", "actuator_opt", "sweep", STEEL, "--vary"]
