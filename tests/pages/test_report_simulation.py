@@ -93,16 +93,21 @@ def shown(page, width=100, unicode=True, colour=False):
     return terminal.text(page, colour=colour, unicode=unicode, width=width)
 
 
-@cache
-def alone(kind):
+def panels(kind, static=None):
     """Every panel of a kind of run on its own paper, and its signals over time."""
     run = case.simulated(kind)
     strips = [strip.panel for strip in figures.strips(run, {})]
     made = {"signals": drawn(Chart("t", [strips], height=20.0 * len(strips) + 8.0), width=120.0)}
-    for part in figures.parts(run, {}):
+    for part in figures.parts(run, {}, static):
         height = max(60.0 * len(part.panels), part.least)
         made[part.name] = drawn(Chart("t", [part.panels], height=height), width=90.0)
     return made
+
+
+@cache
+def alone(kind):
+    """The same without a static stiffness, for all tests that read it."""
+    return panels(kind)
 
 
 def titles(kind):
@@ -489,7 +494,7 @@ def test_a_static_stiffness_is_drawn_beside_the_dynamic_one():
     """Its name stands in the legend where the rod travels, not over time."""
     place = np.linspace(0.0, 0.22, 9)
     for kind, beside in (("stroke", True), ("closed", False)):
-        ink = alone(kind, static=(place, 1e7 + 0 * place))["stiffness"]
+        ink = panels(kind, (place, 1e7 + 0 * place))["stiffness"]
         assert any(m.get("text") == "static" for m in ink.marks) == beside
 
 
