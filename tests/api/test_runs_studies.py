@@ -141,7 +141,7 @@ def test_the_record_of_a_large_sweep_stays_small(folder, design, monkeypatch):
     assert len(run("runs", "show", "last").out) < 3000
 
 
-@pytest.mark.parametrize("more", [[], ["--figure", "scatter", "--figure", "ucurves"]])
+@pytest.mark.parametrize("more", [[], ["--figure", "scatter"]])
 def test_a_sweep_is_reported_out_of_its_store(folder, design, tmp_path, more, monkeypatch):
     """Figures and CSV to the byte, the design file gone, nothing computed or written."""
     made, again, store = tmp_path / "made", tmp_path / "again", tmp_path / "rows.db"

@@ -48,10 +48,16 @@ NOT_TRACED = {
     "wear.sliding_distance": "a history of samples",
 }
 """Models beyond what symbols are for: formulas of the elementary functions."""
+LARGE = ("thermal_network.steady_temperatures-0", "thermal_network.steady_temperatures-1")
+"""Samples whose Jacobian takes seconds; a third of the same model does not."""
 CASES = [
     pytest.param(model, sample, id=label)
     for label, model, sample in cases()
     if label.rsplit("-", 1)[0] not in NOT_TRACED
+]
+DIFFERENTIATED = [
+    pytest.param(*case.values, id=case.id, marks=[pytest.mark.long] if case.id in LARGE else [])
+    for case in CASES
 ]
 STEEP = {
     "orifice.orifice_conductance-2": "closed",
@@ -138,7 +144,7 @@ def test_code_of_a_model_is_the_model(model, sample):
         )
 
 
-@pytest.mark.parametrize(("model", "sample"), CASES)
+@pytest.mark.parametrize(("model", "sample"), DIFFERENTIATED)
 def test_jacobian_of_a_model_is_its_complex_step(model, sample, request):
     """Exact derivatives in every argument, over the largest effect of an argument."""
     inputs, numbers, outputs = traced(model, sample)

@@ -84,17 +84,19 @@ def test_the_saved_design_repeats_the_optimum(tmp_path):
     ("objective", "better"),
     [
         ("maximise: stiffness_min", lambda d, b: d["stiffness_min"] >= b["stiffness_min"]),
-        (
+        pytest.param(
             "minimise: friction_running",
             lambda d, b: d["friction_running"] <= b["friction_running"] * (1 + 1e-9),
+            marks=pytest.mark.long,
         ),
         (
             "minimise:\n    mass: 1\n    friction_running: 0.5",
             lambda d, b: d["friction_running"] <= b["friction_running"] * (1 + 1e-6),
         ),
-        (
+        pytest.param(
             "maximise:\n    stiffness_min: 1\n    burst_factor: 0.5",
             lambda d, b: d["stiffness_min"] >= b["stiffness_min"] * (1 - 1e-6),
+            marks=pytest.mark.long,
         ),
     ],
 )
@@ -234,6 +236,7 @@ VARIABLES = {
 }
 
 
+@pytest.mark.long
 def test_any_dimension_may_move():
     """Every kind of number can be a variable, all at once, and stays within its bounds."""
     lines = [
@@ -269,6 +272,7 @@ def test_what_cannot_move(path, bounds):
     assert refused(text, command="optimise") == faults
 
 
+@pytest.mark.long
 def test_tiny_and_wide_bounds(plain):
     """Bounds a hair apart, and as wide as the quantity allows, are searched all the same."""
     tight = ("    lower: 20 mm\n    upper: 30 mm", "    lower: 22 mm\n    upper: 22.000001 mm")

@@ -48,10 +48,11 @@ def test_own_metric_is_a_metric(plugin):
     text = bench(("requirements:\n", "requirements:\n  slenderness:\n    max: 5.2\n"))
     assert run("check", "-", "--plugin", path, stdin=text.encode()).code == 0
     assert run("check", "-", stdin=text.encode()).code == 3
-    limited = run("optimise", "-", "--json", "--plugin", path, stdin=text.encode()).json
+    search = ["--json", "--starts", "1", "--plugin", path]
+    limited = run("optimise", "-", *search, stdin=text.encode()).json
     assert limited["variables"]["cylinder.bore"]["value"] >= 0.11 / 5.2 * (1 - 1e-6)
     aimed = bench(("minimise: mass", "minimise: slenderness"))
-    result = run("optimise", "-", "--json", "--plugin", path, stdin=aimed.encode())
+    result = run("optimise", "-", *search, stdin=aimed.encode())
     assert result.code in (0, 1)
     assert result.json["objective"]["metric"] == "slenderness"
 

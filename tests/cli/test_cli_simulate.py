@@ -290,7 +290,13 @@ def test_a_run_that_ends_says_where_the_actuator_was(tmp_path):
     assert "the linkage reaches its dead" in result.err
 
 
-@pytest.mark.parametrize("name", sorted(one.name for one in DESIGNS.glob("*.yaml")))
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.long] if name.startswith("huang") else [])
+        for name in sorted(one.name for one in DESIGNS.glob("*.yaml"))
+    ],
+)
 def test_a_start_scenario_runs_around_every_design(name, tmp_path):
     """`init --scenario` writes beside a copy of the design what `check` and `simulate` take."""
     design, file = tmp_path / name, tmp_path / "more" / "step.yaml"

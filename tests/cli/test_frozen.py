@@ -38,12 +38,30 @@ def test_every_case_is_frozen_and_nothing_else_is() -> None:
     assert TOOLS.is_file()
 
 
-def test_texts_without_numbers_of_models_are_frozen() -> None:
+@pytest.mark.parametrize(
+    "words",
+    [
+        [
+            "help",
+            "schema/",
+            "faults/",
+            "init/plain",
+            "init/stated",
+            "init/knee_bonded",
+            "check/all",
+        ],
+        pytest.param(["init/", "check/"], marks=pytest.mark.long),
+    ],
+    ids=["some", "every design"],
+)
+def test_texts_without_numbers_of_models_are_frozen(words) -> None:
     """Help, schema, faults, start files and checks, which no other processor rounds otherwise."""
-    words = ["help", "schema/", "faults/", "init/", "check/"]
     script = ROOT / "tests" / "frozen.py"
     done = subprocess.run(
-        [sys.executable, script, *words], capture_output=True, text=True, check=False
+        [sys.executable, script, "--processes", "1", *words],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
 

@@ -216,7 +216,15 @@ def _reported():
     for kind in results.KINDS.values():
         name = kind.type.rpartition(":")[2]
         if kind.report:
-            slow = name in ("Optimisation", "Simulation", "Rerun", "Calibrated")
+            slow = name in (
+                "Optimisation",
+                "Simulation",
+                "Rerun",
+                "Calibrated",
+                "Prices",
+                "Identification",
+                "Run",
+            )
             yield pytest.param(name, marks=[pytest.mark.long] if slow else [])
 
 
@@ -259,13 +267,18 @@ def test_what_a_report_needs_is_asked_for_in_one_line():
         ao.report(1.0)
 
 
+def _is_plain(function: ast.FunctionDef) -> bool:
+    """Whether a function is decorated at most with the options that commands share."""
+    return [ast.unparse(x) for x in function.decorator_list] in ([], ["with_common_options"])
+
+
 def test_every_command_is_registered():
     """The public functions of the modules of `cli` are commands, but for those that all share."""
     shared = {"__init__", "app", "completion", "faults", "job", "options", "streams"}
     known = {("materials", "materials"), ("runs", "runs")}
     for file in Path(cli.__file__).parent.glob("*.py"):
         own = [] if file.stem in shared else ast.parse(file.read_text("utf-8")).body
-        plain = (x for x in own if isinstance(x, ast.FunctionDef) and not x.decorator_list)
+        plain = (x for x in own if isinstance(x, ast.FunctionDef) and _is_plain(x))
         known |= {(x.name, file.stem) for x in plain if not x.name.startswith("_")}
     named = {name: home.partition(".") for name, home in COMMANDS.items() if name not in HIDDEN}
     assert known == {(function or name, module) for name, (module, _, function) in named.items()}

@@ -64,6 +64,7 @@ def test_its_traceback(broken, words, monkeypatch, capsys):
         assert lines[-1].startswith("internal error of")
 
 
+@pytest.mark.long
 def test_debug_changes_no_report(tmp_path):
     """What --debug prints more is no part of a result."""
     for words in ((), ("--debug",)):
@@ -199,6 +200,7 @@ def test_a_home_that_nobody_has(place):
     assert "the run was not recorded" in swept.err
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.name == "nt", reason="needs a POSIX shell")
 def test_no_standard_input():
     """`-` where the shell has closed it."""
@@ -213,6 +215,7 @@ def test_no_standard_input():
         assert "standard input is closed" in done.stderr
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.name == "nt", reason="an open folder is not deleted there")
 def test_a_working_directory_that_is_gone(tmp_path):
     """What needs none works; the rest says so."""

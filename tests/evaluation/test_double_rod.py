@@ -460,6 +460,7 @@ def test_a_nut_over_the_second_rod_is_kept_by_the_optimiser():
     assert land == pytest.approx((hole - 24e-3) / 2, rel=1e-9)
 
 
+@pytest.mark.long
 def test_the_shipped_rig_optimises_and_a_second_rod_can_vary():
     """The optimum meets all limits; the second rod is a variable as any other."""
     assert ao.optimise(RIG, starts=1).optimum

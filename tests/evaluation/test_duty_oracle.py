@@ -174,7 +174,8 @@ def given_numbers(actuator, own):
             for key in ("breakaway_ratio", "stribeck_speed", "viscous_friction")
         }
         for key in ("coulomb", "contact"):
-            seal[key] = [numbers[f"seal{i}.{key}[{share}]"] for share in (0.0, 0.5, 1.0)]
+            powers = [numbers[f"seal{i}.{key}[{power}]"] for power in (2, 1, 0)]
+            seal[key] = np.polyval(powers, numbers["supply"] * np.array([0.0, 0.5, 1.0])).tolist()
         seals.append(seal | {"name": ring.name, "label": ring.label})
     parts = []
     for i, part in enumerate(plan.parts):

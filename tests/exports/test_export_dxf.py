@@ -7,12 +7,13 @@ import math
 import os
 import subprocess
 import sys
+from functools import cache
 from itertools import combinations, pairwise
 
 import pytest
 from cli_runner import DESIGNS, bench, block
 from hypothesis import given, strategies as st
-from test_export_step import FITTED_ROD, SHIPPED, VARIANTS
+from test_export_step import EACH, FITTED_ROD, VARIANTS
 
 import actuator_opt as ao
 from actuator_opt.exports.dxf import DrawingSizes, Length, dxf, layer_name, rows
@@ -31,6 +32,12 @@ def drawn(source):
     assert not audit.errors
     assert not audit.fixes
     return evaluation, document
+
+
+@cache
+def shipped(path):
+    """The same of a shipped design, for all tests that read it."""
+    return drawn(path)
 
 
 def box(entity, words=None):
@@ -91,11 +98,11 @@ def swept(lines):
     return total * 1e-9
 
 
-@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EACH, ids=lambda path: path.stem)
 def test_swept_sections_weigh_what_the_mass_model_says(path):
     """What the lines of a part's layer sweep is its mass (Pappus)."""
     actuator = ao.read(path)
-    evaluation, document = drawn(actuator)
+    evaluation, document = shipped(path)
     materials = actuator.subject().materials
     found = {}
     for one in evaluation.outlines:
@@ -118,7 +125,7 @@ def dimensions(document):
 
 def test_dimensions_measure_the_design():
     """DIMLFAC 1, and the measurements are the evaluation's lengths in mm."""
-    evaluation, document = drawn(DESIGNS / "knee_bonded.yaml")
+    evaluation, document = shipped(DESIGNS / "knee_bonded.yaml")
     assert document.header["$INSUNITS"] == 4
     lengths = {name: 1000 * value for name, value in evaluation.lengths.items()}
     measured = sorted(one.get_measurement() for one in dimensions(document))
@@ -160,10 +167,10 @@ def check_nothing_overlaps(document):
         assert area[1] > parts.extmax.y or area[3] < parts.extmin.y, one
 
 
-@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EACH, ids=lambda path: path.stem)
 def test_nothing_overlaps_in_shipped_designs(path):
     """By the boxes of ezdxf's fonts."""
-    check_nothing_overlaps(drawn(path)[1])
+    check_nothing_overlaps(shipped(path)[1])
 
 
 @pytest.mark.parametrize("name", [*VARIANTS, "layers"])
@@ -183,7 +190,7 @@ def test_nothing_overlaps_whatever_the_design_has(name):
 
 def test_every_colour_shows_on_black_and_on_white():
     """Contrast of 3:1 at least on either ground [WCAG 1.4.11]; letters are black or white (7)."""
-    document = drawn(DESIGNS / "knee_bonded.yaml")[1]
+    document = shipped(DESIGNS / "knee_bonded.yaml")[1]
     colours = ezdxf.colors
 
     def luminance(index):
@@ -207,7 +214,7 @@ def test_every_colour_shows_on_black_and_on_white():
 
 def test_eyes_are_round():
     """Lug and hole are arcs of the pin's proportions: 3/4 pi d^2 of lug, and the neck."""
-    evaluation, document = drawn(DESIGNS / "knee_bonded.yaml")
+    evaluation, document = shipped(DESIGNS / "knee_bonded.yaml")
     d = 1000 * evaluation.lengths["pin"]
     for layer in ("cap eye", "rod eye"):
         lug, hole = outlined(document, layer)

@@ -14,6 +14,11 @@ import actuator_opt as ao
 from actuator_opt.exports.step import SolidBody, bodies, bounds_solid, joined, step, tidy
 
 SHIPPED = sorted(DESIGNS.glob("*.yaml"))
+EACH = [
+    pytest.param(path, marks=[pytest.mark.long] if path.stem == "huang_110_80_560" else [])
+    for path in SHIPPED
+]
+"""All designs; the oil films of one take seconds."""
 
 FITTED_ROD = """\
 rod:
@@ -73,7 +78,7 @@ def check_masses(evaluation, densities, read):
     return found
 
 
-@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EACH, ids=lambda path: path.stem)
 def test_shipped_designs_weigh_what_the_mass_model_says(path):
     """Closed shells, every edge used once each way, volumes by the divergence theorem."""
     evaluation, densities, read = exported(path)

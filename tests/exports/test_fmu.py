@@ -61,6 +61,14 @@ load:
 """
 
 
+@pytest.fixture(autouse=True)
+def quickly_compiled(request, monkeypatch):
+    """The compiler optimises nothing, which takes most of its time, except for the host."""
+    if request.function is not test_an_established_host:
+        flags = ["-O0" if flag == "-O2" else flag for flag in fmu.FLAGS]
+        monkeypatch.setattr(fmu, "FLAGS", tuple(flags))
+
+
 def written(folder, text, *, design=COURSE, model="stribeck", name="case.yaml"):
     """A scenario file."""
     file = folder / name

@@ -126,6 +126,7 @@ def test_records_of_a_simulation_take_them_too():
         parse_column(text, "U [mV]", "voltage", name="in.csv", units=given)
 
 
+@pytest.mark.long
 def test_identify_with_si_is_identify_with_units(tmp_path):
     """One flag for all columns: bars times 1e5, millimetres over 1000, the same friction."""
     lines = [line for line in RECORD.read_text().splitlines() if not line.startswith("#")]

@@ -129,6 +129,7 @@ def test_an_offset_that_pressure_does_not_change_is_no_area():
     assert not any("seems to be" in one for one in found.stribeck.doubts)
 
 
+@pytest.mark.long
 def test_an_offset_of_a_made_up_sensor():
     """1 bar more in p1 of a made-up record is F_0 = A_1 1e5 Pa = 41.5 N."""
     truth = synthetic.Truth(
@@ -234,6 +235,7 @@ def test_a_short_slow_plateau_says_what_has_not_settled():
     assert min(slow) > 3 * max(fast)
 
 
+@pytest.mark.long
 def test_steps_of_the_position_widen_the_lag():
     """Turns known to 10 um shift the lag by up to e/v: bounds hold the truth, 0 or 4 ms."""
     motion = oracle.ramps(fastest=0.06, duration=2.4, repeats=5)

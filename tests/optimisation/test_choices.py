@@ -367,6 +367,7 @@ def test_check_warns_of_a_choice_that_is_never_possible():
     assert examine(DESIGNS / "knee_choices.yaml").warnings == []
 
 
+@pytest.mark.long
 def test_without_and_with_a_sleeve_is_the_better_of_two_files():
     """`none` is the file without the block and its variables.
 

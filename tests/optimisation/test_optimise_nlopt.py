@@ -19,6 +19,13 @@ LOCAL = [
     "LD_AUGLAG", "LN_AUGLAG_EQ",
 ]  # fmt: skip
 GLOBAL = ["GN_ISRES", "GN_ORIG_DIRECT", "GN_ORIG_DIRECT_L", "GN_AGS"]
+
+
+def slow(*names):
+    """Algorithms that spend all their evaluations, among the long tests."""
+    return [pytest.param(name, marks=pytest.mark.long) for name in names]
+
+
 UNCONSTRAINED = [
     "LD_LBFGS", "LD_TNEWTON", "LD_VAR2", "LN_BOBYQA", "LN_SBPLX", "LN_NELDERMEAD", "LN_PRAXIS",
     "GN_DIRECT", "GN_DIRECT_L", "GN_DIRECT_L_RAND", "GN_CRS2_LM", "GN_ESCH", "GD_STOGO",
@@ -68,7 +75,7 @@ def test_every_unconstrained_algorithm(algorithm):
 
 
 @pytest.mark.parametrize(
-    "algorithm", [*LOCAL[:6], "GN_ISRES", "GN_ORIG_DIRECT_L", "GN_AGS", "auto"]
+    "algorithm", [*LOCAL[:6], *slow("GN_ISRES", "GN_ORIG_DIRECT_L", "GN_AGS"), "auto"]
 )
 def test_infeasible_is_never_success(algorithm):
     """MMA, CCSAQ and COBYLA report success on infeasible problems; the guard does not."""
@@ -78,7 +85,9 @@ def test_infeasible_is_never_success(algorithm):
     assert found.violation > 0.1
 
 
-@pytest.mark.parametrize("algorithm", ["LD_SLSQP", "LD_MMA", "LN_COBYLA", "GN_AGS", "GN_ISRES"])
+@pytest.mark.parametrize(
+    "algorithm", ["LD_SLSQP", "LD_MMA", "LN_COBYLA", *slow("GN_AGS", "GN_ISRES")]
+)
 def test_nan_in_the_box_is_screened(algorithm):
     """A NaN objective (which crashes AGS) counts as a bad point and is not returned."""
 

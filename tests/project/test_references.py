@@ -67,14 +67,13 @@ def cited_text():
     return "\n".join(p.read_text("utf-8") for p in sorted(wanted))
 
 
-@pytest.mark.parametrize("key", REFERENCES)
-def test_references_are_complete(key):
+def test_references_are_complete():
     """Author, title, place and year (a note says why one is missing), and how it was seen."""
-    entry = REFERENCES[key]
-    assert set(entry) <= {"author", "title", "where", "year", "doi", "seen", "note"}
-    assert all(entry[part].strip() for part in ("author", "title", "where"))
-    assert entry["seen"] in {"source", "recalled"}
-    assert isinstance(entry["year"], int) or (entry["year"] is None and entry["note"])
+    for key, entry in REFERENCES.items():
+        assert set(entry) <= {"author", "title", "where", "year", "doi", "seen", "note"}, key
+        assert all(entry[part].strip() for part in ("author", "title", "where")), key
+        assert entry["seen"] in {"source", "recalled"}, key
+        assert isinstance(entry["year"], int) or (entry["year"] is None and entry["note"]), key
 
 
 def test_cited_keys_and_references_match():
@@ -82,33 +81,33 @@ def test_cited_keys_and_references_match():
     assert keys(cited_text()) == set(REFERENCES)
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_every_model_is_documented(name):
+def test_every_model_is_documented():
     """Summary, unit of every argument and result, valid range, source, example: in this order."""
-    parts = sections(FUNCTIONS[name])
-    assert [part for part in parts if part not in ("", "Raises")] == SECTIONS
-    summary = parts[""].partition("\n")[0]
-    assert summary.endswith(".")
-    documented = entries(parts["Parameters"])
-    arguments = inspect.signature(FUNCTIONS[name]).parameters
-    assert set(documented) == set(arguments)
-    for argument, parameter in arguments.items():
-        if parameter.annotation not in UNITLESS:
-            assert re.search(r"\[[^\]]+\]", documented[argument]), f"no unit: {argument}"
-    assert re.search(r"\[[^\]]+\]", parts["Returns"]), "no unit of the result"
-    valid = re.match(r"Valid: (.*?)(?:\n\n|\Z)", parts["Notes"], flags=re.DOTALL)
-    assert len(" ".join(valid[1].split())) <= LONGEST_RANGE
-    assert ">>> " in parts["Examples"]
+    for name in FUNCTIONS:
+        parts = sections(FUNCTIONS[name])
+        assert [part for part in parts if part not in ("", "Raises")] == SECTIONS, name
+        summary = parts[""].partition("\n")[0]
+        assert summary.endswith("."), name
+        documented = entries(parts["Parameters"])
+        arguments = inspect.signature(FUNCTIONS[name]).parameters
+        assert set(documented) == set(arguments), name
+        for argument, parameter in arguments.items():
+            if parameter.annotation not in UNITLESS:
+                assert re.search(r"\[[^\]]+\]", documented[argument]), (name, argument)
+        assert re.search(r"\[[^\]]+\]", parts["Returns"]), f"{name}: no unit of the result"
+        valid = re.match(r"Valid: (.*?)(?:\n\n|\Z)", parts["Notes"], flags=re.DOTALL)
+        assert len(" ".join(valid[1].split())) <= LONGEST_RANGE, name
+        assert ">>> " in parts["Examples"], name
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_every_model_has_a_source(name):
+def test_every_model_has_a_source():
     """A known key, or [derived] followed by the derivation."""
-    reference = " ".join(sections(FUNCTIONS[name])["References"].split())
-    derived = re.findall(r"\[derived\]([^;\[]*)", reference)
-    assert derived or keys(reference)
-    assert set(re.findall(r"\[([^\]]+)\]", reference)) <= {"derived", *REFERENCES}
-    assert all(re.search(r"\w{2,}", reason) for reason in derived), "[derived] without a reason"
+    for name in FUNCTIONS:
+        reference = " ".join(sections(FUNCTIONS[name])["References"].split())
+        derived = re.findall(r"\[derived\]([^;\[]*)", reference)
+        assert derived or keys(reference), name
+        assert set(re.findall(r"\[([^\]]+)\]", reference)) <= {"derived", *REFERENCES}, name
+        assert all(re.search(r"\w{2,}", reason) for reason in derived), f"{name}: no reason"
 
 
 @pytest.mark.parametrize("law", [*seals.LAWS.values(), *elastomer.MODULUS_LAWS.values()])
@@ -118,16 +117,15 @@ def test_every_law_of_a_registry_has_a_source(law):
     assert keys(law.reference) <= set(REFERENCES)
 
 
-@pytest.mark.parametrize("metric", ROWS)
-def test_metrics_find_their_source(metric):
+def test_metrics_find_their_source():
     """What the evaluation reads from a docstring is there: source and valid range."""
-    row = ROWS[metric]
-    for name in {row.model, *row.by_wall.values(), *row.at.values()} - {None, CRITERION}:
-        model = describe(function_of(name))
-        assert model.name == name
-        assert model.name in FUNCTIONS
-        assert model.reference
-        assert 0 < len(model.valid) <= LONGEST_RANGE
+    for metric, row in ROWS.items():
+        for name in {row.model, *row.by_wall.values(), *row.at.values()} - {None, CRITERION}:
+            model = describe(function_of(name))
+            assert model.name == name, metric
+            assert model.name in FUNCTIONS, metric
+            assert model.reference, metric
+            assert 0 < len(model.valid) <= LONGEST_RANGE, metric
 
 
 def names_used(text):

@@ -325,6 +325,7 @@ def test_shut_needles_pump_to_the_closed_form(place) -> None:
         assert values[f"pressure_{side}"].mean() == pytest.approx(own[k], abs=0.3 * BAR)
 
 
+@pytest.mark.long
 def test_both_branches_of_the_closed_form_are_tried() -> None:
     """Near the head chamber A pumps and its minimum stands at its line; at the rod end B's does."""
     for place, ruling, line in ((0.055, "a", 20.5), (0.185, "b", 42.0)):

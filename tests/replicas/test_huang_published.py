@@ -131,6 +131,7 @@ def test_both_laws_fit_with_falling_exponents(row):
                 assert one.upper < 0
 
 
+@pytest.mark.long
 def test_a_high_r_squared_hides_relative_errors():
     """Equal weights see the slow points: R-squared above 0.99 with errors above 40 % of B.
 

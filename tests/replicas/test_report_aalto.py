@@ -158,6 +158,7 @@ def test_the_shipped_design_bears_its_verdicts(tables):
     )
 
 
+@pytest.mark.long
 def test_a_valve_at_30_hz_turns_the_verdict():
     """20 Hz then is below 1.1 times static and 30 Hz is no longer static: the note denies both."""
     found = notes(**{"ports.reducing_valve.natural_frequency": "30 Hz"})["dynamic tests"]
@@ -206,6 +207,7 @@ def test_needle_and_mass_turn_the_verdict():
     assert "Closed ports are not as stiff at 10 as at 30 Hz" in heavy
 
 
+@pytest.mark.long
 def test_another_cylinder_turns_the_verdict():
     """With 63 mm of bore the measured pressures show more than the load: no by-pass."""
     changes = {"cylinder.bore": "63 mm", "retention.thread.diameter": "73 mm"}

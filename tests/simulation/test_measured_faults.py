@@ -260,6 +260,7 @@ def test_numbers_show_what_they_are_uncertain_by():
         assert value - low == pytest.approx(half, rel=0.15)
 
 
+@pytest.mark.long
 def test_the_second_integrator_and_the_hash_come_with_a_fit(tmp_path):
     """--verify counts with --fit; the hash is that of the scenario without it."""
     scene, bench = tmp_path / "step.yaml", tmp_path / "bench.csv"

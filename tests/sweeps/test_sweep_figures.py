@@ -289,6 +289,7 @@ def test_a_metric_without_values_is_told(swept, tmp_path):
     assert not (tmp_path / "figures").exists()
 
 
+@pytest.mark.long
 def test_without_a_feasible_design_the_results_are_still_told(tmp_path):
     """The command prints the sweep, then one line; in JSON both in one object."""
     command = [sys.executable, "-m", "actuator_opt", "sweep", STEEL, "--vary"]
@@ -305,6 +306,7 @@ def test_without_a_feasible_design_the_results_are_still_told(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.long
 def test_a_reduced_sweep_computes_what_is_shown(knee, tmp_path):
     """--reduce leaves metrics out, but for those of the figures; contours need no kept rows."""
     swept = ao.sweep(
