@@ -74,6 +74,7 @@ class CycleFatigue:
     Attributes
     ----------
     keys : (cycle, "damage", part) of every result; the cycle is "" for the whole life
+    outputs : results of a sample that the damage needs
     """
 
     def __init__(
@@ -84,6 +85,7 @@ class CycleFatigue:
         outputs: Sequence[str],
     ) -> None:
         self.cycles, self._rows, self._outputs = tuple(cycles), rows, tuple(outputs)
+        self.outputs = [x for x in outputs if x.startswith("pulse_") or x == "position"]
         self._known: dict[bytes, tuple[Array, Array]] = {}
         parts = sorted(enumerate(plan.parts if cycles else ()), key=lambda pair: pair[1].bolted)
         self._loads: tuple[History, ...] = tuple(dict.fromkeys(part.load for _, part in parts))
@@ -159,7 +161,9 @@ class CycleFatigue:
             else np.zeros((parts, *numbers.shape[1:]))
             for k, cycles in enumerate(own)
         ]
-        joined = _Ends(*(np.concatenate(part, axis=1) for part in zip(*whole, strict=True)))
+        joined = whole[0]
+        if len(whole) > 1:
+            joined = _Ends(*(np.concatenate(part, axis=1) for part in zip(*whole, strict=True)))
         return np.concatenate([*blocks, self._damage(numbers, joined)])
 
     def _at(self, counted: _Counted, near: NearSamples) -> tuple[_Ends, _Ends]:
