@@ -166,6 +166,35 @@ class CycleRecord:
         first, last = (self.motion[turns[k + 1]] - self.motion[turns[k]] for k in (0, -2))
         return int(np.sign(first) != np.sign(last))
 
+    def thinned(self, samples: int) -> CycleRecord:
+        """About `samples` samples at most; the same record is returned if it has no more.
+
+        Of every part of the time, those stay where motion, speed and load are largest and smallest.
+        """
+        if self.time.size <= samples:
+            return self
+        kept = {0, self.time.size - 1}
+        for part in np.array_split(np.arange(self.time.size), max(samples // 6, 1)):
+            for values in (self.motion, self.speed, self.load):
+                kept |= {int(part[np.argmax(values[part])]), int(part[np.argmin(values[part])])}
+        rows = np.array(sorted(kept))
+
+        def some(values: Array | None) -> Array | None:
+            return None if values is None else fixed(values[rows])
+
+        return replace(
+            self,
+            time=fixed(self.time[rows]),
+            speed=fixed(self.speed[rows]),
+            angle=some(self.angle),
+            torque=some(self.torque),
+            position=some(self.position),
+            force=some(self.force),
+            supply_pressure=some(self.supply_pressure),
+            temperature=some(self.temperature),
+            lines=tuple(self.lines[row] for row in rows) if self.lines else (),
+        )
+
     def resampled(self, samples: int) -> CycleRecord:
         """At least `samples` samples: every interval is divided evenly, by the splines.
 
