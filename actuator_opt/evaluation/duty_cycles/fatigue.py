@@ -8,7 +8,7 @@ several duty cycles it also adds one from the smallest to the largest load of th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -17,10 +17,7 @@ from ...base.numeric import Array
 from ...base.symbolic.recorded import RecordedFunction
 from ...models import endurance, rainflow
 from .numbers import LIFE, STRESS, History, SamplePlan
-
-if TYPE_CHECKING:
-    from .results import NearSamples
-    from .samples import SampleResults
+from .samples import NearSamples, SampleResults
 
 Rows = npt.NDArray[np.intp]
 MOST_KNOWN = 1000

@@ -26,6 +26,7 @@ from .samples import (
     COLUMNS,
     SEAL_SUMS,
     SUMS,
+    NearSamples,
     SampleModel,
     SampleResults,
     leakage_at_rest,
@@ -426,20 +427,6 @@ class _Picks(NamedTuple):
     """Outputs of the extremes that are taken."""
     rows: npt.NDArray[np.intp]
     """(extremes that are taken, windows and ranks, designs)"""
-
-
-class NearSamples(NamedTuple):
-    """Results with slopes at some samples of a cycle."""
-
-    values: Array
-    """(samples, outputs, designs, 1 + directions)"""
-    places: npt.NDArray[np.intp]
-    """Place of each sample of the cycle among `values`; meaningless for samples left out."""
-
-    def at(self, outputs: Array | int, rows: npt.NDArray[np.intp]) -> Array:
-        """Outputs (..., designs, 1 + directions) at samples (..., designs)."""
-        picked: Array = self.values[self.places[rows], outputs, np.arange(rows.shape[-1])]
-        return picked
 
 
 def _data(record: CycleRecord) -> Array:

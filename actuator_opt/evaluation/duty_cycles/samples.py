@@ -29,9 +29,11 @@ NEIGHBOURS = (
     "motion_before", "load_before", "motion_after", "load_after", "time_weight", "time_share",
     "ripple_weight", "peak_weight",
 )  # fmt: skip
-"""Further columns of data for the sums over a cycle: the samples before and after (at the ends the
-sample itself), the time that belongs to the sample, its share of the period, and the weights of the
-flow in the ripple volume and in the largest flow of all actuators."""
+"""Further columns of data for the sums over a cycle.
+
+They are the samples before and after (at the ends the sample itself), the time of the sample and
+its share of the period, and weights of the flow: in the ripple volume, and in the largest flow of
+all actuators."""
 SUMS = (
     "duration", "way", "volume", "supply_energy", "leakage_energy", "work_out", "work_in",
     "friction_energy", "return_energy", "throttling_energy", "oil_volume", "position_mean",
@@ -109,7 +111,7 @@ def sample(
 def summands(
     plan: SamplePlan, u: Mapping[str, Array], s: Mapping[str, Array], *, linked: bool
 ) -> list[Array]:
-    """Summands of a sample in all `SUMS`, and in `SEAL_SUMS` of each seal; their sums are SI.
+    """Summands of a sample in every one of `SUMS`, and in `SEAL_SUMS` of each seal, SI.
 
     Sums over the motion are those of the trapezoid rule between positions, sums over time those of
     the trapezoid rule in time: a sample has half of the interval before and half of that after it.
@@ -405,6 +407,20 @@ class SampleResults:
     def real(self, name: str) -> npt.NDArray[np.float64]:
         """A result at all samples (samples, designs)."""
         return self.values[:, self.outputs.index(name)]
+
+
+class NearSamples(NamedTuple):
+    """Results with slopes at some samples of a cycle."""
+
+    values: Array
+    """(samples, outputs, designs, 1 + directions)"""
+    places: npt.NDArray[np.intp]
+    """Place of each sample of the cycle among `values`; meaningless for samples left out."""
+
+    def at(self, outputs: Array | int, rows: npt.NDArray[np.intp]) -> Array:
+        """Outputs (..., designs, 1 + directions) at samples (..., designs)."""
+        picked: Array = self.values[self.places[rows], outputs, np.arange(rows.shape[-1])]
+        return picked
 
 
 class SampleModel:
