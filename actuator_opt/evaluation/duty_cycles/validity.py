@@ -114,7 +114,8 @@ def _at_leakage(cycle: CycleStudy, *, valve: bool) -> Iterator[tuple[str, str]]:
             metric,
             f"{cycle.name}: at {worst.time:.3g} s, {100 * leakage / flow:.0f} % of the flow is "
             "leakage, which brings the pressures of both chambers closer together; the lowest "
-            f"pressure, {INPUTS['pressure'].text(worst.value, 3)}, leaves this out: run {_simulation(cycle)}",
+            f"pressure, {INPUTS['pressure'].text(worst.value, 3)}, leaves this out: "
+            f"run {_simulation(cycle)}",
         )
 
 
