@@ -68,7 +68,7 @@ def browser():
 
 @pytest.fixture
 def visit(browser):
-    """Open pages; at the end, none has written to the console, failed, or asked for another file."""
+    """Open pages; none may write to the console, fail, or ask for another file."""
     visits = Visits(browser)
     yield visits
     assert visits.close() == []

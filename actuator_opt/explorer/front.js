@@ -38,11 +38,11 @@ function drawRanges(g, toX, toY) {
 }
 // Drag a frame with the mouse, also in a view that is zoomed; a touch scrolls the page instead.
 function brushFrame(event) {
+  DRAGGED = false;
   if (event.button) return;
   if (pans(event)) { panning(event); return; }
   if (event.pointerType === "touch") return;
   const from = onScatter(event), columns = [STATE.x, STATE.y];
-  DRAGGED = false;
   const value = (k, share) => { const [low, high] = spanOf(k); return low + share * (high - low); };
   const move = (e) => {
     const to = onScatter(e);

@@ -65,7 +65,6 @@ function pans(event) { return VIEW !== WHOLE && (event.shiftKey || event.pointer
 function panning(event) {
   const box = byId("scatter").getBoundingClientRect(), wide = box.width - MARGIN.left - MARGIN.right, high = box.height - MARGIN.top - MARGIN.bottom;
   let { clientX: x, clientY: y } = event;
-  DRAGGED = false;
   dragging((e) => {
     if (!DRAGGED && Math.hypot(e.clientX - x, e.clientY - y) < 5) return;
     DRAGGED = true;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -65,3 +66,26 @@ class Visits:
         for context in self.contexts:
             context.close()
         return self.faults
+
+
+CONTRAST = Path(__file__).with_name("contrast.js").read_text("utf-8")
+CONTROLS = r"^ *- (button|checkbox|combobox|slider|spinbutton|textbox|region|table)\b(.*)$"
+
+
+def contrasts(page):
+    """Contrast of every visible text, the lowest first: (ratio, element, text)."""
+    return page.evaluate(CONTRAST)
+
+
+def controls(page):
+    """Role and name of every control, as a screen reader is told; no name is an empty text."""
+    found = re.findall(CONTROLS, page.locator("body").aria_snapshot(), re.MULTILINE)
+    return [(role, rest if rest.startswith(' "') else "") for role, rest in found]
+
+
+def violations(page):
+    """What axe-core objects to: (rule, elements); skips without axe-playwright-python."""
+    axe = pytest.importorskip("axe_playwright_python", reason="no axe-playwright-python")
+    page.evaluate(Path(axe.__file__).with_name("axe.min.js").read_text("utf-8"))
+    found = page.evaluate("axe.run()")["violations"]
+    return [(rule["id"], [node["html"] for node in rule["nodes"]]) for rule in found]
