@@ -261,8 +261,9 @@ def test_zoom_by_wheel_keys_and_buttons(page, visit):
     opened.mouse.move(*at)
     opened.mouse.wheel(0, 100)
     opened.wait_for_function("() => scrollY > 0")
+    opened.mouse.wheel(0, -200)
+    opened.wait_for_function("() => scrollY === 0")
     assert opened.evaluate(VIEW) == whole
-    opened.evaluate("scrollTo(0, 0)")
     scatter.focus()
     before = opened.evaluate(value)
     opened.mouse.wheel(0, -300)
