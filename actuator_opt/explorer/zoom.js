@@ -13,7 +13,8 @@ function look(view) {
   const times = 1 / (VIEW[0][1] - VIEW[0][0]);
   byId("times").textContent = VIEW === WHOLE ? "" : `${trimmed(Number(times.toPrecision(2)))}×`;
   byId("scatter").classList.toggle("zoomed", VIEW !== WHOLE);
-  redraw();
+  KEPT.delete("scatter");
+  redraw(true);
 }
 // Zoom about a point, given as shares of the plot, or about the chosen design.
 function zoom(factor, about = middle()) {
