@@ -60,6 +60,7 @@ function paintDimensions(design, pinned) {
   }));
 }
 function paintHolds(design) {
+  byId("holds-title").textContent = design.feasible ? "What holds it" : "What is missed, and what holds it";
   byId("holds").replaceChildren(...design.holds.map((row) => node("tr", { className: row.missed ? "missed" : "" },
     node("td", { textContent: row.missed ? `${row.name}: ${row.value}, missed` : row.name }), node("td", { textContent: row.limit }), node("td", { textContent: row.where }))));
 }
@@ -113,12 +114,12 @@ const ACTS = {
   move(slider) {
     change(slider.row.path, slider.value);
     slider.refuse("");
-    S.touched.path === slider.row.path || (S.touched = { path: slider.row.path, time: 0 });
+    if (S.touched.path !== slider.row.path) S.touched = { path: slider.row.path, key: false, time: 0 };
     note("");
     paint();
     solve();
   },
-  commit(slider) { commit(slider.row.path); },
+  commit(slider, key) { commit(slider.row.path, key); },
   focus(slider) {
     if (S.focused === slider.row.path) return;
     S.focused = slider.row.path;
@@ -126,12 +127,13 @@ const ACTS = {
   },
   async typed(slider, text) {
     const { path } = slider.row;
+    byId("main").setAttribute("aria-busy", "true");
     try {
       const data = await ask("solve", { changes: { ...wishes(S.changes), [path]: slider.typedWish(text) } });
       slider.refuse("");
-      if (data.dropped) return;
+      if (data.dropped) return;  // a slider was moved meanwhile
       change(path, path in data.changes ? exact(shown(slider.row, data.changes[path])) : slider.file);
-      S.touched = { path, time: 0 };
+      S.touched = { path, key: false, time: 0 };
       commit(path);
       slider.show(S.changes[path] ?? slider.file);
       LINE.latest++;
@@ -139,6 +141,7 @@ const ACTS = {
     } catch (fault) {
       if (!(fault instanceof Unfit)) throw fault;
       slider.refuse(fault.message);
+      if (!LINE.active) byId("main").setAttribute("aria-busy", "false");
     }
   },
 };

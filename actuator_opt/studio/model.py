@@ -1,4 +1,4 @@
-"""What the page asks for: optima, prices, curves, files. Every answer is plain data in SI."""
+"""Optima, prices, curves and files for the page. Every answer is plain data in SI."""
 
 from __future__ import annotations
 
@@ -213,7 +213,7 @@ class Studio:
             return optimise(self.actuator.changed(changed), seed=self._seed, prices=False)
 
     def _card(self, changed: Mapping[str, float], stop: Stop) -> str:
-        """What the terminal says if nothing fits: the nearest miss, and changes that help."""
+        """The text of the terminal if nothing fits: the nearest miss, and changes that help."""
         last = None if self._last is None else self._last[1]
         result = self._search(changed, stop) if last is None or not last.infeasibility else last
         if result.infeasibility is None:  # a whole search finds what a warm one has missed
@@ -225,7 +225,7 @@ class Studio:
         )  # fmt: skip
 
     def _shown(self, result: Optimisation) -> dict[str, Any]:
-        """What the page shows of an optimum, or of a nearest miss."""
+        """Data of an optimum, or of a nearest miss, that the page shows."""
         evaluation = result.best_evaluation
         return {
             "feasible": result.optimum,
@@ -280,7 +280,7 @@ class Studio:
                 found.append(moved.price(path))
             except UsageError:
                 continue
-        rows = [
+        rows: list[dict[str, Any]] = [
             {
                 "path": price.path,
                 "value": price.value,
@@ -305,7 +305,7 @@ class Studio:
     def curve(
         self, changes: Numbers, path: str, values: Sequence[float], stop: Stop
     ) -> dict[str, Any]:
-        """Optima for some values of one number; objective None where no design was found.
+        """Optima for some values of one number; objective None for a value without a design.
 
         Raises
         ------
@@ -429,9 +429,7 @@ def _held(evaluation: Evaluation, result: Optimisation) -> list[dict[str, Any]]:
     active = () if result.kkt is None else result.kkt.active
     required = {(row.metric, row.sense) for row in evaluation.requirements}
     limits: list[Requirement | Check] = [*evaluation.requirements]
-    limits += [
-        x for x in evaluation.checks if not x.advice and (x.metric, x.sense) not in required
-    ]
+    limits += [x for x in evaluation.checks if not x.advice and (x.metric, x.sense) not in required]
     limits.sort(key=lambda row: row.state != "missed")
 
     def holds(row: Requirement | Check) -> bool:

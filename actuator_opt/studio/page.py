@@ -42,7 +42,7 @@ POLICY = _policy()
 
 @cache
 def page() -> str:
-    """The page as HTML. It holds nothing of any design."""
+    """The page as HTML. It is the same for all designs."""
     style, script = _parts()
     parts = {"STYLE": style, "SCRIPT": script}
     return re.sub("@([A-Z]+)@", lambda match: parts[match[1]], _text("page.html"))

@@ -16,12 +16,13 @@ NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,79}\.yaml")
 """Names under which the page may save: never a folder, never a hidden file."""
 LARGEST = 10_000_000
 """Largest file that may be replaced, in bytes; a design has some thousands."""
-_FLAGS = os.O_RDONLY | sum(getattr(os, name, 0) for name in ("O_NOFOLLOW", "O_NONBLOCK", "O_BINARY"))
+_OPENED = ("O_NOFOLLOW", "O_NONBLOCK", "O_BINARY")
+"""Flags to open a file that may turn out to be a link or a pipe; some systems lack some."""
 
 
 @dataclass(frozen=True, slots=True)
 class Saved:
-    """What became of a file: its name, its SHA-256, and whether it was written.
+    """A file of the studio: its name, its SHA-256, and whether it was written.
 
     If not, a file of this name exists, and the hash is that of the existing file.
     """
@@ -41,7 +42,7 @@ def digest(path: Path) -> str:
     if path.is_symlink():
         raise _refused(path, "is a link")
     try:
-        number = os.open(path, _FLAGS)
+        number = os.open(path, os.O_RDONLY | sum(getattr(os, name, 0) for name in _OPENED))
     except OSError as error:
         raise _refused(path, f"cannot be read: {error.strerror}") from None
     if not stat.S_ISREG(os.fstat(number).st_mode):

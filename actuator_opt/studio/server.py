@@ -1,6 +1,6 @@
 """The server of the studio: one page on this machine, and six routes for it.
 
-Any page that a person visits can send requests to 127.0.0.1. Each request is therefore checked in
+Any page that the user visits can send requests to 127.0.0.1. Each request is therefore checked in
 this order before its body is read: host, origin, content type, length, token, route.
 """
 
@@ -71,7 +71,7 @@ class Server(ThreadingHTTPServer):
     daemon_threads = True
     block_on_close = False
     studio: Studio
-    """The studio, which exists once the server is told to serve it."""
+    """The studio; set when `serve` begins."""
 
     def __init__(self, port: int = 0) -> None:
         try:
@@ -115,7 +115,7 @@ class Handler(BaseHTTPRequestHandler):
     timeout = IDLE
 
     def do_GET(self) -> None:
-        """Send the page, which holds no data of the design."""
+        """Send the page, which contains no data of the design."""
         try:
             self._require_host()
             if self.path != "/":
@@ -144,7 +144,7 @@ class Handler(BaseHTTPRequestHandler):
         except Refused as refused:
             self._refuse(refused)
 
-    do_HEAD = do_PUT = do_PATCH = do_DELETE = do_OPTIONS = do_TRACE = do_CONNECT = _other
+    do_HEAD = do_PUT = do_PATCH = do_DELETE = do_OPTIONS = do_TRACE = do_CONNECT = _other  # noqa: N815
 
     # ---- rules, in this order ----
 
@@ -248,8 +248,8 @@ class _Wish:
     """The body of a request; every access checks type and size, and unknown keys are refused."""
 
     KEYS: ClassVar = frozenset(
-        ("tab", "changes", "describe", "explain", "paths", "draw", "path", "values", "name")
-        + ("replacing",)
+        {"tab", "changes", "describe", "explain", "paths", "draw", "path", "values", "name"}
+        | {"replacing"}
     )
 
     def __init__(self, body: Body) -> None:

@@ -49,7 +49,7 @@ class Slider {
       event.preventDefault();
       this.show(onGrid(Math.min(Math.max(this.value + steps, this.low), this.high), this.step));
       this.acts.move(this);
-      this.acts.commit(this);
+      this.acts.commit(this, true);
     });
     this.field.addEventListener("change", () => this.acts.typed(this, this.field.value.trim()));
     this.field.addEventListener("keydown", (event) => { if (event.key === "Escape") { this.refuse(""); this.show(this.value); } });

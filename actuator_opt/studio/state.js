@@ -3,7 +3,7 @@
 const PATIENCE = 400, CALM = 250, MOST_UNDO = 200, CHUNK = 5, MERGE = 800;
 const S = {
   design: null, goal: null, sliders: new Map(), changes: {}, committed: {}, past: [], future: [],
-  shown: null, shownFor: "", good: null, A: null, priced: null, curves: new Map(), focused: "", touched: { path: "", time: 0 },
+  shown: null, shownFor: "", good: null, A: null, priced: null, curves: new Map(), focused: "", touched: { path: "", key: false, time: 0 },
 };
 
 const keyOf = (changes, without) => JSON.stringify(Object.keys(changes).filter((path) => path !== without).sort().map((path) => [path, changes[path]]));
@@ -165,20 +165,21 @@ async function trace(path, changes, stale) {
 }
 
 // ---- whole drags can be undone ----
-function commit(path = "") {
+// Steps by keys that follow each other closely count as one.
+function commit(path = "", key = false) {
   if (keyOf(S.changes) === keyOf(S.committed)) return;
-  const now = performance.now(), merged = path && S.touched.path === path && now - S.touched.time < MERGE && S.past.length;
+  const now = performance.now(), merged = key && S.touched.key && S.touched.path === path && now - S.touched.time < MERGE;
   if (!merged) S.past = [...S.past, S.committed].slice(-MOST_UNDO);
   S.committed = S.changes;
   S.future = [];
-  S.touched = { path, time: now };
+  S.touched = { path, key, time: now };
   paintButtons();
 }
 function travel(from, to) {
   if (!from.length) return;
   to.push(S.committed);
   S.changes = S.committed = from.pop();
-  S.touched = { path: "", time: 0 };
+  S.touched = { path: "", key: false, time: 0 };
   showChanges();
 }
 function showChanges() {

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, TypeVar, cast
 
 Kind = Literal["solve", "prices", "curve", "kept"]
-"""What a job does. A "kept" job, such as saving, is neither stopped nor dropped."""
+"""Kinds of jobs. A "kept" job, such as saving, is neither stopped nor dropped."""
 Stop = Callable[[], bool]
 _T = TypeVar("_T")
 

@@ -14,29 +14,33 @@ from actuator_opt.studio.saving import digest, require_name, save_text
 
 
 def sha(text):
+    """SHA-256 of a text."""
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 @pytest.mark.parametrize("name", ["a.yaml", "knee_2.studio.yaml", "-.yaml", "K" * 80 + ".yaml"])
 def test_plain_names_are_taken(name):
+    """Letters, digits, and the three signs."""
     assert require_name(name) == name
 
 
 @pytest.mark.parametrize(
     "name",
     [
-        "", ".yaml", "..yaml", "../a.yaml", "a/b.yaml", "/etc/a.yaml", "a\\b.yaml", "C:a.yaml", "a.yml",
-        "a.yaml\n", "a.yaml.py", "a b.yaml", "ä.yaml", "a\0.yaml", "K" * 81 + ".yaml", "~.yaml",
-        "%2e.yaml", None, 3, ["a.yaml"],
+        "", ".yaml", "..yaml", "../a.yaml", "a/b.yaml", "/etc/a.yaml", "a\\b.yaml", "C:a.yaml",
+        "a.yml", "a.yaml\n", "a.yaml.py", "a b.yaml", "ä.yaml", "a\0.yaml", "K" * 81 + ".yaml",
+        "~.yaml", "%2e.yaml", None, 3, ["a.yaml"],
     ],
 )  # fmt: skip
 def test_all_other_names_are_refused(name, tmp_path):
+    """No folder, drive, other suffix, control or foreign letter."""
     with pytest.raises(UsageError):
         save_text(tmp_path, name, "x")
     assert not os.listdir(tmp_path)
 
 
 def test_a_new_file_is_written_whole_with_usual_permissions(tmp_path):
+    """Nothing else stays in the folder."""
     saved = save_text(tmp_path, "a.yaml", "µ: 1\n")
     assert (saved.written, saved.sha256) == (True, sha("µ: 1\n"))
     assert (tmp_path / "a.yaml").read_text("utf-8") == "µ: 1\n"
@@ -86,6 +90,7 @@ def test_links_and_folders_are_not_followed(tmp_path):
 
 
 def test_a_huge_file_is_no_design(tmp_path, monkeypatch):
+    """It is not read into memory."""
     monkeypatch.setattr(saving, "LARGEST", 3)
     (tmp_path / "a.yaml").write_text("four")
     with pytest.raises(InputError, match="too large"):
@@ -93,6 +98,8 @@ def test_a_huge_file_is_no_design(tmp_path, monkeypatch):
 
 
 def test_a_full_disk_leaves_no_part(tmp_path, monkeypatch):
+    """The fault is one line."""
+
     def full(file):
         raise OSError(28, "No space left on device")
 

@@ -33,28 +33,35 @@ class Recorder:
         return {"fine": True}
 
     def describe(self):
+        """As `Studio.describe`."""
         return {"name": "x"}
 
     def solve(self, changes, stop, *, explain=False):
+        """As `Studio.solve`."""
         return self._note("solve", dict(changes), explain)
 
     def prices(self, changes, paths, stop, *, draw=False):
+        """As `Studio.prices`."""
         return self._note("prices", dict(changes), paths, draw)
 
     def curve(self, changes, path, values, stop):
+        """As `Studio.curve`."""
         return self._note("curve", dict(changes), path, values)
 
     def save(self, changes, name, replacing):
+        """As `Studio.save`."""
         self._note("save", dict(changes), name, replacing)
         return Saved(name, "0" * 64, written=True)
 
     def report(self, changes):
+        """As `Studio.report`."""
         self._note("report", dict(changes))
         return ["reports/x.pdf"]
 
 
 @pytest.fixture(scope="module")
 def running():
+    """A server with a recorder, for all tests."""
     server, studio = Server(), Recorder()
     thread = threading.Thread(target=server.serve, args=(studio, lambda error: "a fault"))
     thread.start()
@@ -65,6 +72,7 @@ def running():
 
 @pytest.fixture
 def served(running):
+    """The server, with nothing recorded yet."""
     server, studio = running
     studio.calls, studio.fails = [], None
     return server, studio
@@ -99,6 +107,7 @@ def sent(server, method="POST", path="/api/solve", body=b"{}", drop=(), twice=()
 
 
 def test_our_own_page_is_answered(served):
+    """With all headers, by both names of this machine."""
     server, studio = served
     wish = json.dumps({"changes": {"cylinder.stroke": "112 mm"}, "tab": "a"}).encode()
     assert sent(server, body=wish)[::2] == (200, {"fine": True})
@@ -129,6 +138,7 @@ def test_rebound_names_are_refused(served, host, method):
 
 
 def test_no_host_and_two_hosts_are_refused(served):
+    """Of two hosts a proxy may believe the other one."""
     server, studio = served
     assert sent(server, drop=["Host"])[0] == 421
     assert sent(server, twice=["Host"])[0] == 421
@@ -142,6 +152,7 @@ def test_no_host_and_two_hosts_are_refused(served):
      "http://127.0.0.1:{port}.evil.example", "http://127.0.0.1:{port}/", "file://", ""],
 )  # fmt: skip
 def test_other_pages_are_refused(served, origin):
+    """Cross-site requests, sandboxed frames, other ports and schemes."""
     server, studio = served
     status, headers, _ = sent(server, Origin=origin.format(port=server.server_port))
     assert (status, studio.calls) == (403, [])
@@ -149,6 +160,7 @@ def test_other_pages_are_refused(served, origin):
 
 
 def test_no_origin_and_two_origins_are_refused(served):
+    """Browsers always state one."""
     server, studio = served
     assert sent(server, drop=["Origin"])[0] == 403
     assert sent(server, twice=["Origin"])[0] == 403
@@ -166,6 +178,7 @@ def test_forms_of_other_pages_are_refused(served, kind):
 
 
 def test_the_length_is_stated_and_small(served):
+    """One plain number, and no chunks."""
     server, studio = served
     assert sent(server, drop=["Content-Length"])[0] == 411
     assert sent(server, twice=["Content-Length"])[0] == 411
@@ -181,6 +194,7 @@ def test_the_length_is_stated_and_small(served):
 
 @pytest.mark.parametrize("change", ["", "x", "{token}x", "{half}", "{upper}", "é"])
 def test_the_token_is_needed(served, change):
+    """Whole, exact, and nothing more."""
     server, studio = served
     token = server.token
     wrong = change.format(token=token, half=token[:-1], upper=token.swapcase())
@@ -189,6 +203,7 @@ def test_the_token_is_needed(served, change):
 
 
 def test_no_token_two_tokens_and_tokens_elsewhere_are_refused(served):
+    """Neither the address nor a cookie counts."""
     server, studio = served
     assert sent(server, drop=[TOKEN_HEADER])[0] == 401
     assert sent(server, twice=[TOKEN_HEADER])[0] == 401
@@ -198,6 +213,7 @@ def test_no_token_two_tokens_and_tokens_elsewhere_are_refused(served):
 
 
 def test_the_token_is_long_fresh_and_compared_in_constant_time(served, monkeypatch):
+    """192 bits, another at each start."""
     server, _ = served
     assert module.TOKEN_BYTES * 8 == 192
     assert len(server.token) == 32
@@ -216,9 +232,11 @@ def test_the_token_is_long_fresh_and_compared_in_constant_time(served, monkeypat
 @pytest.mark.parametrize(
     "path",
     ["/api/", "/api/solve/", "/api/solve?x", "/api/../api/solve", "/API/solve", "/api/%73olve",
-     "/../../etc/passwd", "/etc/passwd", "//api/solve/..", "http://evil.example/api/solve", "/main.js"],
+     "/../../etc/passwd", "/etc/passwd", "//api/solve/..", "http://evil.example/api/solve",
+     "/main.js"],
 )  # fmt: skip
 def test_only_the_fixed_routes_exist(served, path):
+    """No other spelling of a route leads to it."""
     server, studio = served
     assert sent(server, path=path)[0] == 404
     assert sent(server, "GET", path)[0] == 404
@@ -260,6 +278,7 @@ def test_no_path_of_a_client_reaches_the_disk(served, monkeypatch):
      json.dumps({"changes": {f"x{k}": 1 for k in range(65)}}).encode()],
 )  # fmt: skip
 def test_unfit_wishes_are_refused_by_a_sentence(served, body):
+    """Not JSON, wrong types, not finite, too many, too long."""
     server, studio = served
     status, _, answer = sent(server, body=body)
     assert (status, studio.calls) == (422, [])
@@ -272,16 +291,19 @@ def test_unfit_wishes_are_refused_by_a_sentence(served, body):
     [("/api/prices", {}), ("/api/prices", {"paths": "x"}), ("/api/prices", {"paths": [1]}),
      ("/api/prices", {"paths": ["x"] * 65}), ("/api/curve", {"path": "x", "values": []}),
      ("/api/curve", {"path": 1, "values": [1]}), ("/api/curve", {"path": "x", "values": ["1"]}),
-     ("/api/curve", {"path": "x", "values": [1] * 65}), ("/api/save", {}), ("/api/save", {"name": 1}),
+     ("/api/curve", {"path": "x", "values": [1] * 65}), ("/api/save", {}),
+     ("/api/save", {"name": 1}),
      ("/api/save", {"name": "../x.yaml"}), ("/api/save", {"name": "x.yaml", "replacing": 3})],
 )  # fmt: skip
 def test_other_unfit_wishes_are_refused(served, path, wish):
+    """The same for prices, curves and names of files."""
     server, studio = served
     assert sent(server, path=path, body=json.dumps(wish).encode())[0] == 422
     assert studio.calls == []
 
 
 def test_every_route_takes_what_it_needs(served):
+    """The arguments reach the studio as they were sent."""
     server, studio = served
     for path, wish in {
         "/api/solve": {"describe": True},
@@ -300,7 +322,7 @@ def test_every_route_takes_what_it_needs(served):
 @pytest.mark.parametrize(
     ("fault", "status", "answer"),
     [
-        (InputError(Diagnostic("is odd", "mend it", path="a.b")), 422, {"error": "a.b: is odd; mend it"}),
+        (InputError(Diagnostic("odd", "mend it", path="a.b")), 422, {"error": "a.b: odd; mend it"}),
         (UsageError(Diagnostic("is no use")), 422, {"error": "is no use"}),
         (Unsolvable(Diagnostic("none")), 200, {"infeasible": True}),
         (Dropped(), 200, {"dropped": True}),
@@ -308,6 +330,7 @@ def test_every_route_takes_what_it_needs(served):
     ],
 )  # fmt: skip
 def test_faults_become_answers(served, fault, status, answer):
+    """A fault has its status, and the next wish is answered."""
     server, studio = served
     studio.fails = fault
     assert sent(server)[::2] == (status, answer)
@@ -321,6 +344,7 @@ def test_faults_become_answers(served, fault, status, answer):
      ("POST", "/api/solve", {"Origin": "null"}), ("GET", "/", {"Host": "evil"})],
 )  # fmt: skip
 def test_every_answer_carries_the_policy(served, method, path, headers):
+    """Refusals, too."""
     _, given, _ = sent(served[0], method, path, **headers)
     for name, text in HEADERS.items():
         assert given[name] == text
@@ -346,6 +370,7 @@ def test_a_refused_body_is_no_second_request(served):
 
 
 def test_a_cut_body_is_refused(served, monkeypatch):
+    """A body that never arrives holds the connection for a short time only."""
     server, studio = served
     monkeypatch.setattr(module.Handler, "timeout", 0.05)
     assert sent(server, Content_Length="50")[0] in (400, 408)
@@ -359,14 +384,15 @@ def test_the_page_holds_no_data_and_no_way_to_inject(served):
     assert status == 200
     assert server.token not in text
     assert len(text.encode()) < 60_000
-    for forbidden in ("innerHTML", "outerHTML", "insertAdjacent", "document.write", "eval(", "Function("):
-        assert forbidden not in text  # fmt: skip
+    injections = "innerHTML outerHTML insertAdjacent document.write eval( Function("
+    assert not [word for word in injections.split() if word in text]
     assert not re.search(r"\b(?:src|href)=[\"'](?!data:,)", text)
     assert set(re.findall(r"https?://[\w.]+", text)) == {"http://www.w3.org"}
     assert not re.search(r"<[^>]* (?:on\w+|style)=", text.partition("<script>")[0])
 
 
 def test_a_taken_port_is_said(served):
+    """With its number, and exit code 2."""
     server, _ = served
     with pytest.raises(UsageError, match=f"--port {server.server_port}: is in use") as refused:
         Server(server.server_port)

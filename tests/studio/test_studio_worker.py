@@ -12,6 +12,7 @@ from actuator_opt.studio.worker import Dropped, Worker
 
 @pytest.fixture
 def worker():
+    """A worker that is closed afterwards."""
     one = Worker()
     yield one
     one.close()
@@ -24,6 +25,7 @@ class Slow:
         self.began, self.free, self.stopped = threading.Event(), threading.Event(), False
 
     def __call__(self, stop):
+        """Wait; raise `Dropped` once stopped."""
         self.began.set()
         while not self.free.wait(0.002):
             if stop():
@@ -105,12 +107,14 @@ def test_saving_is_never_stopped(worker):
 
 
 def test_faults_reach_who_asked_and_the_thread_lives_on(worker):
+    """The next job is run."""
     with pytest.raises(ZeroDivisionError):
         worker.do(lambda stop: 1 / 0)
     assert worker.do(lambda stop: 4) == 4
 
 
 def test_closing_stops_and_drops(worker):
+    """Nobody waits for ever."""
     slow = Slow()
     first = asked(worker, slow, kind="solve")
     assert slow.began.wait(5)
