@@ -1,7 +1,7 @@
 """Time of the studio in a browser, from a slider's input event to the painted result.
 
-``python benchmarks/studio.py [DESIGN] [MOVES]`` drags the first requirement; it needs Playwright and
-Chromium. The cold solve of the same run is printed beside it, because times depend on the machine.
+``python benchmarks/studio.py [DESIGN] [MOVES]`` drags the first requirement; it needs Playwright
+and Chromium. The cold solve of the same run is printed beside it, as times depend on the machine.
 """
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ def studio(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Open a page on this machine: drag a requirement, and the best design follows.
+    """Drag a requirement on a local page, and the best design follows.
 
     The page shows the section, masses, prices and trade-offs. It saves beside the design, and
     reports to --out. Ctrl-C ends the studio and prints the command that finds the same design.
@@ -57,20 +57,20 @@ def studio(
         raise UsageError(Diagnostic(message, "name a design file"))
     require_folder(out)
     job = Job(design, sets=sets, unset=unset, plugins=plugin, as_json=as_json, quiet=quiet)
-    server = Server(port or 0)
-    open_studio = Studio(design, set=job.set, plugins=plugin or (), out=out, seed=seed)
-    if as_json:
-        streams.out_json({"address": server.address})
-    else:
-        streams.out(f"studio: {server.address}")
-        if not quiet:
-            streams.err("Keep the address to yourself. Ctrl-C ends the studio.")
-    try:
-        with _browser("" if no_browser else server.address, quiet):
-            server.serve(open_studio, _fault)
-    except KeyboardInterrupt:
-        (streams.err if as_json else streams.out)(open_studio.command())
-        raise
+    with Server(port or 0) as server:
+        opened = Studio(design, set=job.set, plugins=plugin or (), out=out, seed=seed)
+        if as_json:
+            streams.out_json({"address": server.address})
+        else:
+            streams.out(f"studio: {server.address}")
+            if not quiet:
+                streams.err("Keep the address to yourself. Ctrl-C ends the studio.")
+        try:
+            with _browser("" if no_browser else server.address, quiet):
+                server.serve(opened, _fault)
+        except KeyboardInterrupt:
+            (streams.err if as_json else streams.out)(opened.command())
+            raise
 
 
 def _fault(error: Exception) -> str:

@@ -71,7 +71,8 @@ class Server(ThreadingHTTPServer):
     daemon_threads = True
     block_on_close = False
     studio: Studio
-    """The studio; set when `serve` begins."""
+    worker: Worker
+    fault: Fault
 
     def __init__(self, port: int = 0) -> None:
         try:
@@ -85,8 +86,6 @@ class Server(ThreadingHTTPServer):
         self.token = secrets.token_urlsafe(TOKEN_BYTES)
         self.hosts = frozenset(f"{name}:{self.server_port}" for name in (LOOPBACK, "localhost"))
         self.origins = frozenset(f"http://{host}" for host in self.hosts)
-        self.worker = Worker()
-        self.fault: Fault = lambda error: f"internal error: {type(error).__name__}"
 
     @property
     def address(self) -> str:
@@ -94,8 +93,8 @@ class Server(ThreadingHTTPServer):
         return f"http://{LOOPBACK}:{self.server_port}/#{self.token}"
 
     def serve(self, studio: Studio, fault: Fault) -> None:
-        """Answer requests until Ctrl-C."""
-        self.studio, self.fault = studio, fault
+        """Answer requests until Ctrl-C; `fault` reports an unexpected exception."""
+        self.studio, self.fault, self.worker = studio, fault, Worker()
         try:
             self.serve_forever(poll_interval=0.2)
         finally:
