@@ -8,6 +8,7 @@ import sys
 import tempfile
 
 import pytest
+from browser import Visits, started
 from hypothesis import settings
 
 # Each core runs a worker; linear algebra on all of them at once would only make them wait.
@@ -56,3 +57,18 @@ def coarse_images():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(paper, "PIXELS_PER_INCH", paper.PIXELS_PER_INCH / 5)
         yield
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """The installed browser; skips where there is none, or no Playwright."""
+    with started() as launched:
+        yield launched
+
+
+@pytest.fixture
+def visit(browser):
+    """Open pages; none may write to the console, fail, or ask for another file."""
+    visits = Visits(browser)
+    yield visits
+    assert visits.close() == []

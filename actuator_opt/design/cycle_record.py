@@ -166,6 +166,27 @@ class CycleRecord:
         first, last = (self.motion[turns[k + 1]] - self.motion[turns[k]] for k in (0, -2))
         return int(np.sign(first) != np.sign(last))
 
+    def thinned(self, samples: int) -> CycleRecord:
+        """About `samples` samples at most; the same record is returned if it has no more.
+
+        Of every part of the time, those stay where motion, speed and load are largest and smallest.
+        """
+        if self.time.size <= samples:
+            return self
+        kept = {0, self.time.size - 1}
+        for part in np.array_split(np.arange(self.time.size), max(samples // 6, 1)):
+            for values in (self.motion, self.speed, self.load):
+                kept |= {int(part[np.argmax(values[part])]), int(part[np.argmin(values[part])])}
+        rows = np.array(sorted(kept))
+
+        columns = {
+            name: fixed(values[rows])
+            for name in ("time", "speed", *_SPLINED, *_STATES)
+            if (values := getattr(self, name)) is not None
+        }
+        lines = tuple(self.lines[row] for row in rows) if self.lines else ()
+        return replace(self, lines=lines, **columns)
+
     def resampled(self, samples: int) -> CycleRecord:
         """At least `samples` samples: every interval is divided evenly, by the splines.
 
@@ -178,34 +199,32 @@ class CycleRecord:
         steps = np.diff(self.time)[:, None] * (np.arange(parts) / parts)
         time = np.append((self.time[:-1, None] + steps).ravel(), self.time[-1])
 
-        def smooth(values: Array | None) -> Array | None:
-            if values is None:
-                return None
+        def smooth(values: Array) -> Array:
             new = spline(self.time, values, closed=self.closed)(time)
             new[::parts] = values  # the samples of the file stay to the last bit
             return fixed(new)
 
-        def linear(values: Array | None) -> Array | None:
-            return None if values is None else fixed(np.interp(time, self.time, values))
-
+        columns = {
+            name: smooth(values) if name in _SPLINED else fixed(np.interp(time, self.time, values))
+            for name in (*_SPLINED, *_STATES)
+            if (values := getattr(self, name)) is not None
+        }
         speed = smooth(self.speed)
         if not self.stated_speed:
             speed = fixed(spline(self.time, self.motion, closed=self.closed)(time, 1))
-        assert speed is not None
         lines = np.append(np.repeat(np.asarray(self.lines[:-1]), parts), self.lines[-1:])
         return replace(
             self,
             time=fixed(time),
             speed=speed,
-            angle=smooth(self.angle),
-            torque=smooth(self.torque),
-            position=smooth(self.position),
-            force=smooth(self.force),
-            supply_pressure=linear(self.supply_pressure),
-            temperature=linear(self.temperature),
             notes=(*self.notes, f"resampled from {self.time.size} to {time.size} samples"),
             lines=tuple(map(int, lines)),
+            **columns,
         )
+
+
+_SPLINED = ("angle", "torque", "position", "force")
+"""Columns of which a record has one pair, which splines join."""
 
 
 def fixed(values: Array) -> Array:

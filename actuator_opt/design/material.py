@@ -584,7 +584,8 @@ def assess(
         weak = [key for key, parameter in estimate.parameters.items() if not parameter.identifiable]
         if weak:
             reasons.append(
-                f"confidence interval of {', '.join(weak)} is wider than {WEAK:.0%} of the value"
+                f"confidence interval of {', '.join(weak)} is wider than {100 * WEAK:.0f} % of the "
+                "value"
             )
     return LawFit(
         name=name,

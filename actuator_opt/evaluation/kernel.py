@@ -244,8 +244,10 @@ class PreparedDesign:
     windows: bool = False
     """Whether extremes along a duty cycle are results of every window of time, as limits of the
     optimiser."""
+    most_samples: int | None = None
+    """Largest number of samples of a duty cycle that count; None: all."""
     cycles: dict[tuple[str, ...], CycleModels] = field(default_factory=dict, compare=False)
-    """Models of the duty cycles by the names of their numbers; a cache."""
+    """Models of the duty cycles by the names of their numbers and `most_samples`; a cache."""
 
     @property
     def quantities(self) -> Mapping[str, Quantity]:
@@ -558,14 +560,17 @@ def cycle_models(subject: PreparedDesign, plan: SamplePlan, numbers: Numbers) ->
     """Models of the duty cycles; made once for the same numbers."""
     duty = subject.design.duty
     assert duty is not None
-    names = tuple(numbers)
-    if names not in subject.cycles:
+    names, most = tuple(numbers), subject.most_samples
+    key = (*names, str(most))
+    if key not in subject.cycles:
         records = {cycle.name: duty.record(cycle) for cycle in duty.cycles}
+        if most is not None:
+            records = {name: record.thinned(most) for name, record in records.items()}
         phases = {
             cycle.name: [other.phase - cycle.phase for other in cycle.also] for cycle in duty.cycles
         }
-        subject.cycles[names] = CycleModels(plan, records, names, phases)
-    return subject.cycles[names]
+        subject.cycles[key] = CycleModels(plan, records, names, phases)
+    return subject.cycles[key]
 
 
 def _duty(subject: PreparedDesign, v: Values, s: Statics, out: MetricArrays) -> None:

@@ -461,8 +461,8 @@ def _rod_warnings(subject: PreparedDesign, run: ModelRun) -> Iterable[tuple[str,
         for metric in ("yield_factor", "rod_factor", "local_buckling_factor"):
             yield (
                 metric,
-                f"the push exceeds {NEAR:.0%} of the buckling load; above this share, the bending "
-                "moment of the rod is extrapolated",
+                f"the push exceeds {100 * NEAR:.0f} % of the buckling load; above this share, the "
+                "bending moment of the rod is extrapolated",
             )
 
 

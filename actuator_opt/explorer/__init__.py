@@ -29,6 +29,7 @@ from ..evaluation.limits import MetricLimit
 from ..evaluation.outline_templates import LENGTHS, Template
 from ..evaluation.plugin import Plugin, with_own
 from ..evaluation.result import NO_RESERVE, NO_ROOM, Outline
+from ..rendering.series import heading
 from ..rendering.text import SENSES, limit_text, pretty, unit_text
 from ..sweeps.explored import BEST, Explored
 from ..sweeps.result import MORE_IS_BETTER, better
@@ -77,6 +78,7 @@ def _base64(values: Array, kind: str) -> str:
 def _column(name: str, label: str, unit: str, values: Array) -> dict[str, Any]:
     """Return a numeric column as JSON; if all rows have the same value, it is stored only once."""
     column: dict[str, Any] = {"name": name, "label": label, "unit": unit_text(unit)}
+    column["csv"] = heading(name, unit if column["unit"] else "")
     if np.isfinite(values[0]) and (values == values[0]).all():
         return column | {"value": float(np.float32(values[0]))}
     return column | {"data": _base64(values, "<f4")}
@@ -111,7 +113,7 @@ def _texts(explored: Explored, path: str) -> dict[str, Any]:
     texts = explored.kept.texts[path]
     number = [texts.index(variant[path]) for variant in explored.variants]
     codes = _base64(np.array(number)[explored.variant], "<u2")
-    return {"name": path, "label": path, "unit": "", "texts": texts, "codes": codes}
+    return {"name": path, "label": path, "unit": "", "csv": path, "texts": texts, "codes": codes}
 
 
 def _exact(explored: Explored) -> list[dict[str, Any]]:
@@ -284,7 +286,7 @@ def _part(outline: Outline) -> dict[str, Any]:
 
 
 FOLDER = Path(__file__).parent
-SCRIPTS = ("data", "front", "scatter", "axes", "section", "main")
+SCRIPTS = ("data", "front", "scatter", "zoom", "axes", "section", "table", "compare", "main")
 _ESCAPES = {c: f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029"}
 
 

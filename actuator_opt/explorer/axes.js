@@ -18,9 +18,11 @@ function thinned(visible) {
 }
 function drawLines() {
   const { g } = kept("lines", paintLines), { at, low } = axisPlaces();
-  for (const [row, name] of [[STATE.hover, "--grey"], [STATE.pinned, "--ink"]]) if (row >= 0) {
-    g.lineWidth = 2.5; g.strokeStyle = ink(name); trace(g, STATE.axes.map((k) => COLUMNS[k]), at, low, row);
+  for (const [row, name] of [[STATE.hover, "--grey"], [STATE.pinned, "--ink"], [STATE.a, "--accent"]]) if (row >= 0) {
+    g.lineWidth = 2.5; g.strokeStyle = ink(name); g.setLineDash(row === STATE.a ? [7, 4] : []);
+    trace(g, STATE.axes.map((k) => COLUMNS[k]), at, low, row);
   }
+  g.setLineDash([]);
 }
 function trace(g, columns, at, low, row) {
   let pen = false;
@@ -74,9 +76,9 @@ function setRange(column, low, high) {
 function rangeOf(column) { return (STATE.ranges.get(column) || [-Infinity, Infinity]).map((v) => held(COLUMNS[column], v)); }
 
 // The name of a column, as text that may break after the separators of a PATH.
-function broken(column) {
+function broken(column, name = column.name) {
   const words = document.createElement("span");
-  for (const part of (column.unit ? `${column.name}, ${column.unit}` : column.name).split(/(?<=[._\]])/)) {
+  for (const part of (column.unit ? `${name}, ${column.unit}` : name).split(/(?<=[._\]])/)) {
     words.append(part, document.createElement("wbr"));
   }
   return words;
@@ -153,12 +155,10 @@ function brush(event, column, end) {
     if (one.texts) range = [Math.ceil(Math.min(...range) - 0.5), Math.floor(Math.max(...range) + 0.5)];
     setRange(column, ...range);
   };
-  const up = () => {
-    window.removeEventListener("pointermove", move); window.removeEventListener("pointerup", up);
+  dragging(move, () => {
     if (!moved && end === undefined) setRange(column, one.low, one.high);
     say(`${COUNT} of ${N} designs left`);
-  };
-  window.addEventListener("pointermove", move); window.addEventListener("pointerup", up);
+  });
 }
 function onLines(event) {
   const box = byId("axes").getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;

@@ -44,10 +44,12 @@ function shown(column, value) {
   if (column.texts) return column.texts[value];
   return Number.isFinite(value) ? trimmed(value) : "–";
 }
-function trimmed(value) {
-  const size = Math.abs(value);
-  if (size !== 0 && (size >= 1e6 || size < 1e-3)) return String(Number(value.toPrecision(4))).replace("-", "−");
-  return String(Number(value.toPrecision(size >= 1000 ? 6 : 4))).replace("-", "−");
+function trimmed(value, digits) {
+  const size = Math.abs(value), far = size !== 0 && (size >= 1e6 || size < 1e-3);
+  const number = Number(value.toPrecision(digits || (size >= 1000 && !far ? 6 : 4)));
+  if (size === 0 || (size >= 1e-4 && size < 1e9)) return String(number).replace("-", "−");
+  const [front, power] = number.toExponential().split("e");
+  return `${front.replace("-", "−")}×10${[...power.replace("+", "")].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("")}`;
 }
 
 // Quote a word for a POSIX shell.
@@ -64,7 +66,7 @@ function commandOf(row) {
 }
 
 const STATE = { x: DATA.start.x, y: DATA.start.y, c: DATA.start.c, axes: DATA.start.axes.slice(),
-  ranges: new Map(), pinned: -1, hover: -1, lit: -1 };
+  ranges: new Map(), pinned: -1, a: -1, hover: -1, lit: -1 };
 let VISIBLE = new Uint8Array(N), COUNT = 0;
 const MISSED = new Uint16Array(N);
 
@@ -82,6 +84,17 @@ function filter() {
     VISIBLE[k] = keep;
     COUNT += keep;
   }
+}
+
+// Follow the pointer until it is let go.
+function dragging(move, done) {
+  const up = () => {
+    window.removeEventListener("pointermove", move);
+    for (const kind of ["pointerup", "pointercancel"]) window.removeEventListener(kind, up);
+    done();
+  };
+  window.addEventListener("pointermove", move);
+  for (const kind of ["pointerup", "pointercancel"]) window.addEventListener(kind, up);
 }
 
 function ticks(low, high, most) {

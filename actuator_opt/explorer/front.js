@@ -36,12 +36,14 @@ function drawRanges(g, toX, toY) {
   g.strokeStyle = ink("--accent"); g.lineWidth = 1.5; g.setLineDash([5, 4]);
   g.strokeRect(x0, y0, x1 - x0, y1 - y0); g.setLineDash([]);
 }
-// Drag a frame with the mouse; a touch scrolls the page instead.
+// Drag a frame with the mouse, also in a view that is zoomed; a touch scrolls the page instead.
 function brushFrame(event) {
-  if (event.pointerType === "touch" || event.button) return;
-  const from = onScatter(event), columns = [STATE.x, STATE.y];
   DRAGGED = false;
-  const value = (k, share) => { const [low, high] = axisSpan(COLUMNS[columns[k]]); return low + share * (high - low); };
+  if (event.button) return;
+  if (pans(event)) { panning(event); return; }
+  if (event.pointerType === "touch") return;
+  const from = onScatter(event), columns = [STATE.x, STATE.y];
+  const value = (k, share) => { const [low, high] = spanOf(k); return low + share * (high - low); };
   const move = (e) => {
     const to = onScatter(e);
     if (!DRAGGED && Math.hypot(e.clientX - event.clientX, e.clientY - event.clientY) < 5) return;
@@ -52,11 +54,7 @@ function brushFrame(event) {
       setRange(column, ...ends);
     });
   };
-  const up = () => {
-    window.removeEventListener("pointermove", move); window.removeEventListener("pointerup", up);
-    if (DRAGGED) say(`${COUNT} of ${N} designs left`);
-  };
-  window.addEventListener("pointermove", move); window.addEventListener("pointerup", up);
+  dragging(move, () => { if (DRAGGED) say(`${COUNT} of ${N} designs left`); });
 }
 // Position of the pointer, as shares of the two axes.
 function onScatter(event) {

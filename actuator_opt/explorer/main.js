@@ -8,10 +8,12 @@ function redraw(above) {
   WAITING = true;
   requestAnimationFrame(() => { WAITING = false; draw(); });
 }
-function draw() { drawScatter(); drawLegend(); drawLines(); placeAxes(); }
+function draw() { drawScatter(); drawLegend(); drawLines(); placeAxes(); drawTable(); }
+let PRINTING = false;
 // Draw for print: dark on white, at the width of a sheet.
 function printing(on) {
   document.documentElement.classList.toggle("printing", on);
+  PRINTING = on; STALE = true;
   KEPT.clear(); draw();
 }
 function say(text) { byId("live").textContent = text; }
@@ -20,6 +22,7 @@ function refresh() {
   byId("count").textContent = `${COUNT} of ${N} designs meet what is asked for${STATE.ranges.size ? " and lie in the ranges" : ""}`;
   byId("scatter").setAttribute("aria-label", `${COLUMNS[STATE.y].head} over ${COLUMNS[STATE.x].head}, ${COUNT} of ${N} designs`);
   LIMITS.forEach((one) => { one.note.textContent = noteOf(one); });
+  STALE = true;
   redraw();
 }
 // How many designs a limit excludes, and how many of them no other selected limit excludes.
@@ -31,12 +34,7 @@ function noteOf(limit) {
 function describe(row) {
   byId("design-title").textContent = row < 0 ? "No design chosen" : `Design ${row + 1} of ${N}`;
   drawSection(row);
-  const missed = row < 0 ? [] : LIMITS.filter((one) => one.cut[row]).sort((a, b) => a.margin[row] - b.margin[row]);
-  const verdict = byId("verdict");
-  const tight = missed.length || row < 0 ? [] : LIMITS.filter((one) => one.margin[row] < one.reserve);
-  verdict.className = missed.length ? "bad" : tight.length ? "doubt" : "good";
-  verdict.textContent = row < 0 ? "" : !missed.length ? `Meets every requirement and check${tight.length ? `; without reserve: ${tight.map((one) => one.name).join(", ")}` : ""}.`
-    : `Misses ${missed.slice(0, 5).map((one) => `${one.name} (${marginText(one, row)})`).join(", ")}${missed.length > 5 ? ` and ${missed.length - 5} more` : ""}.`;
+  [byId("verdict").className, byId("verdict").textContent] = row < 0 ? ["", ""] : verdictOf(row);
   byId("numbers").replaceChildren(...(row < 0 ? [] : COLUMNS.map((column) => {
     const line = document.createElement("tr"), head = document.createElement("th");
     head.scope = "row"; head.textContent = column.label;
@@ -49,6 +47,14 @@ function describe(row) {
   byId("command").textContent = row < 0 ? "" : commandOf(row);
   byId("copy").disabled = row < 0;
 }
+// Whether a design meets all limits: the kind of the answer, and the answer.
+function verdictOf(row) {
+  const missed = LIMITS.filter((one) => one.cut[row]).sort((a, b) => a.margin[row] - b.margin[row]);
+  const more = missed.length > 5 ? ` and ${missed.length - 5} more` : "";
+  if (missed.length) return ["bad", `Misses ${missed.slice(0, 5).map((one) => `${one.name} (${marginText(one, row)})`).join(", ")}${more}.`];
+  const tight = LIMITS.filter((one) => one.margin[row] < one.reserve).map((one) => one.name).join(", ");
+  return [tight ? "doubt" : "good", `Meets every requirement and check${tight ? `; without reserve: ${tight}` : ""}.`];
+}
 function marginText(limit, row) {
   const margin = limit.margin[row];
   if (!Number.isFinite(margin)) return "no answer";
@@ -56,7 +62,7 @@ function marginText(limit, row) {
 }
 function pin(row) {
   STATE.pinned = row; STATE.hover = -1;
-  describe(row);
+  describe(row); compared(); markRows();
   redraw(true);
   const x = COLUMNS[STATE.x], y = COLUMNS[STATE.y];
   say(row < 0 ? "No design chosen" : `Design ${row + 1}: ${x.label} ${shown(x, x.values[row])} ${x.unit}, ${y.label} ${shown(y, y.values[row])} ${y.unit}. ${byId("verdict").textContent}`);
@@ -110,7 +116,7 @@ function buildChoices() {
     const list = byId(key);
     COLUMNS.forEach((column, k) => { const one = document.createElement("option"); one.value = k; one.textContent = column.head; list.append(one); });
     list.value = STATE[key];
-    list.addEventListener("change", () => { STATE[key] = Number(list.value); refresh(); });
+    list.addEventListener("change", () => { STATE[key] = Number(list.value); if (key !== "c") look(WHOLE); refresh(); });
   }
   COLUMNS.forEach((column, k) => CHOICES.push(ticked(byId("choose"), column.head, STATE.axes.includes(k), (on) => {
     STATE.axes = on ? [...STATE.axes, k].sort((a, b) => a - b) : STATE.axes.filter((one) => one !== k);
@@ -123,7 +129,7 @@ function begin() {
   byId("summary").textContent = DATA.summary;
   byId("where").textContent = DATA.where;
   byId("base").textContent = DATA.design;
-  buildChoices(); buildLimits(); buildAxes();
+  buildChoices(); buildLimits(); buildAxes(); buildZoom(); buildTable(); buildCompare();
   const scatter = byId("scatter");
   scatter.addEventListener("pointermove", (event) => hover(nearest(event)));
   scatter.addEventListener("pointerleave", () => hover(-1));

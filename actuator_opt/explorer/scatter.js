@@ -1,5 +1,5 @@
 // Scatter plot of two columns, coloured by a third. The user selects designs by pointer or keys.
-const MARGIN = { left: 68, right: 14, top: 10, bottom: 42 };
+const MARGIN = { left: 76, right: 14, top: 10, bottom: 42 };
 let PLACED = { px: new Float32Array(N), py: new Float32Array(N) };
 
 function axisSpan(column) {
@@ -8,23 +8,29 @@ function axisSpan(column) {
 }
 // The points are painted once; marks of the selected designs are drawn above them.
 function drawScatter() {
-  const { g, w, h } = kept("scatter", paintScatter), { px, py } = PLACED, m = MARGIN;
-  if (STATE.lit >= 0) { g.save(); g.beginPath(); g.rect(m.left, m.top, w - m.left - m.right, h - m.top - m.bottom); g.clip(); drawCut(g, LIMITS[STATE.lit].cut); g.restore(); }
-  for (const [row, name] of [[STATE.pinned, "--ink"], [STATE.hover, "--grey"]]) if (row >= 0 && px[row] === px[row] && py[row] === py[row]) {
-    g.strokeStyle = ink(name); g.lineWidth = 2;
+  const { g, w, h } = kept("scatter", paintScatter), { px, py } = PLACED;
+  g.save(); clip(g, w, h);
+  if (STATE.lit >= 0) drawCut(g, LIMITS[STATE.lit].cut);
+  for (const [row, name] of [[STATE.pinned, "--ink"], [STATE.hover, "--grey"], [STATE.a, "--accent"]]) if (row >= 0 && px[row] === px[row] && py[row] === py[row]) {
+    g.strokeStyle = g.fillStyle = ink(name); g.lineWidth = 2;
     g.beginPath(); g.arc(px[row], py[row], 7, 0, 7); g.stroke();
+    g.fillText(letter(row), px[row] + 9, py[row] - 6);
   }
+  g.restore();
+}
+function clip(g, w, h) {
+  const m = MARGIN;
+  g.beginPath(); g.rect(m.left, m.top, w - m.left - m.right, h - m.top - m.bottom); g.clip();
 }
 function paintScatter(g, w, h) {
   const m = MARGIN;
   const x = COLUMNS[STATE.x], y = COLUMNS[STATE.y], c = COLUMNS[STATE.c];
-  const [x0, x1] = axisSpan(x), [y0, y1] = axisSpan(y);
+  const [x0, x1] = spanOf(0), [y0, y1] = spanOf(1);
   const toX = (v) => m.left + (v - x0) / (x1 - x0) * (w - m.left - m.right);
   const toY = (v) => h - m.bottom - (v - y0) / (y1 - y0) * (h - m.top - m.bottom);
   drawFrame(g, w, h, x, y, toX, toY, [x0, x1, y0, y1]);
   const { px, py } = PLACED;
-  g.save();
-  g.beginPath(); g.rect(m.left, m.top, w - m.left - m.right, h - m.top - m.bottom); g.clip();
+  g.save(); clip(g, w, h);
   const small = N > 500 ? 2 : 3.2;
   g.fillStyle = ink("--faint");
   for (let k = 0; k < N; k++) {
@@ -53,9 +59,12 @@ function drawCut(g, cut) {
   }
   g.stroke();
 }
+// Ticks within a span, each with its text, which has the digits that tell it from the next one.
 function places(column, low, high, most) {
-  if (column.texts) return column.texts.map((_, k) => k);
-  return ticks(Math.max(low, -3e38), Math.min(high, 3e38), most);
+  if (column.texts) return column.texts.map((text, k) => [k, text]).filter(([k]) => k >= low && k <= high);
+  const found = ticks(Math.max(low, -3e38), Math.min(high, 3e38), most), step = found[1] - found[0];
+  const size = Math.max(...found.map(Math.abs)), digits = Math.min(Math.ceil(Math.log10(size / step)) + 1, 9);
+  return found.map((v) => [v, digits > 4 ? trimmed(v, digits) : shown(column, v)]);
 }
 function drawFrame(g, w, h, x, y, toX, toY, [x0, x1, y0, y1]) {
   const m = MARGIN;
@@ -63,17 +72,17 @@ function drawFrame(g, w, h, x, y, toX, toY, [x0, x1, y0, y1]) {
   g.strokeRect(m.left + 0.5, m.top + 0.5, w - m.left - m.right, h - m.top - m.bottom);
   g.textAlign = "center"; g.textBaseline = "top";
   let free = -Infinity;
-  for (const v of places(x, x0, x1, Math.max(2, Math.floor((w - m.left) / 90)))) {
-    const at = toX(v), text = fitted(g, shown(x, v), 110), half = g.measureText(text).width / 2;
+  for (const [v, label] of places(x, x0, x1, Math.max(2, Math.floor((w - m.left) / 90)))) {
+    const at = toX(v), text = fitted(g, label, 110), half = g.measureText(text).width / 2;
     g.beginPath(); g.moveTo(at, h - m.bottom); g.lineTo(at, h - m.bottom + 4); g.stroke();
     if (at - half > free) { g.fillText(text, at, h - m.bottom + 6); free = at + half + 6; }
   }
   g.fillText(fitted(g, x.head, w - m.left - m.right), (m.left + w - m.right) / 2, h - 16);
   g.textAlign = "right"; g.textBaseline = "middle";
-  for (const v of places(y, y0, y1, 6)) {
+  for (const [v, label] of places(y, y0, y1, 6)) {
     const at = toY(v);
     g.beginPath(); g.moveTo(m.left - 4, at); g.lineTo(m.left, at); g.stroke();
-    g.fillText(fitted(g, shown(y, v), m.left - 24), m.left - 6, at);
+    g.fillText(fitted(g, label, m.left - 24), m.left - 6, at);
   }
   g.save(); g.translate(11, (m.top + h - m.bottom) / 2); g.rotate(-Math.PI / 2); g.textAlign = "center";
   g.fillText(fitted(g, y.head, h - m.top - m.bottom), 0, 0); g.restore();
@@ -109,9 +118,10 @@ function drawLegend() {
 }
 function nearest(event) {
   const box = byId("scatter").getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
+  const m = MARGIN, within = (k) => PLACED.px[k] >= m.left && PLACED.px[k] <= box.width - m.right && PLACED.py[k] >= m.top && PLACED.py[k] <= box.height - m.bottom;
   let best = 18 * 18, found = -1;
   for (const wanted of [1, 0]) {
-    for (let k = 0; k < N; k++) if (VISIBLE[k] === wanted) {
+    for (let k = 0; k < N; k++) if (VISIBLE[k] === wanted && within(k)) {
       const d = (PLACED.px[k] - x) ** 2 + (PLACED.py[k] - y) ** 2;
       if (d < best) { best = d; found = k; }
     }
@@ -137,9 +147,11 @@ function keyed(event) {
   const { x, y } = STATE;
   const ways = { ArrowRight: [x, y, 1], ArrowLeft: [x, y, -1], ArrowUp: [y, x, 1], ArrowDown: [y, x, -1],
     Home: [x, y, "first"], End: [x, y, "last"] };
+  if (zoomKey(event)) { event.preventDefault(); return; }
   if (event.key === "Escape") pin(-1);
+  else if (event.key === "p" || event.key === "P") { if (STATE.pinned >= 0) pinA(STATE.pinned); }
   else if (event.key === "Delete" || event.key === "Backspace") { for (const one of [x, y]) STATE.ranges.delete(one); refresh(); say(byId("count").textContent); }
-  else if (ways[event.key]) pin(stepped(...ways[event.key]));
+  else if (ways[event.key]) { pin(stepped(...ways[event.key])); reveal(STATE.pinned); }
   else return;
   event.preventDefault();
 }

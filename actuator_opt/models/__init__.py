@@ -18,6 +18,7 @@ Some functions are for scripts alone; no part of the program calls them:
 
 - `end_stop.cushion_mean_pressure`, `end_stop.cushion_open_area`: pressure and flow area of a
   cushion that brakes evenly, as input for `stops.cushion` of a scenario
+- `wear.cycle_severity`: severity of a measured contact pressure, as the input of a worn depth
 - `end_bending.clamped`: bending of a wall at a rigid clamp, an upper bound for any joint
 - `elements.capacitance`, `elements.resonance_frequency`, `elements.sound_speed`,
   `lugre.lugre_steady_deflection`, `transmission_line.plugged_branch_impedance`,

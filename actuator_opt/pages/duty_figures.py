@@ -451,11 +451,13 @@ def _draw_pose(
     pin = max(lengths.get("pin", 0.0) / 2 * factor, 0.7)
     for spot in (place(pose.pivot), place(pose.crank), joint):
         ink.circle(*spot, pin, fill=WHITE, pen=0.25)
-    for spot, words, dx in (
-        (place(pose.pivot), "fixed pivot", 0.0), (joint, "joint", 0.0),
-    ):  # fmt: skip
-        below = spot[1] + pin + 2.4
-        ink.text(spot[0] + dx, below, words, size=6.0, anchor="center", color=GREY, halo=True)
+    below = joint[1] + pin + 2.4
+    corner = max(on(start, -barrel)[1], on(start, barrel)[1])  # the halo of a name must not cut it
+    for spot, words, y in (
+        (place(pose.pivot), "fixed pivot", max(below, corner + 2.2)),
+        (joint, "joint", below),
+    ):
+        ink.text(spot[0], y, words, size=6.0, anchor="center", color=GREY, halo=True)
 
 
 # ---- temperatures from cold ----

@@ -247,8 +247,12 @@ def _open_checks(evaluation: Evaluation, title: str) -> Block:
 
 
 def places(evaluation: Evaluation) -> Iterator[Block]:
-    """The worst places of every limit that several places have to meet; the others are counted."""
-    stated: Sequence[Requirement | Check] = (*evaluation.requirements, *evaluation.checks)
+    """The worst places of every limit that several places have to meet; the others are counted.
+
+    Limits of load cases are left out: each applies to one case, and its row names the place.
+    """
+    required = [row for row in evaluation.requirements if not row.path.startswith("load_cases[")]
+    stated: Sequence[Requirement | Check] = (*required, *evaluation.checks)
     limits = {
         row.metric: (row.name if isinstance(row, Check) else "", row.sense, row.limit)
         for row in stated

@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import exp, log, pi, sqrt
 
 import numpy as np
-from scipy.optimize import fsolve
+from scipy.optimize import root
 
 AIR = 101325.0
 
@@ -413,7 +413,9 @@ def steady(mean, inlet, u):
             rest[k] += film * area * (temperature[k] - ambient)
         return rest
 
-    t = fsolve(balance, np.full(len(q), ambient + 20.0), xtol=1e-13)
+    solution = root(balance, np.full(len(q), ambient + 20.0), tol=1e-13)
+    assert np.abs(solution.fun).max() < 1e-9 * np.abs(q).max()  # `success` may be False by rounding
+    t = solution.x
     radius, faces = u["bore"] / 2, []
     for k, layer in enumerate(u["thermal"]["layers"]):
         outer = radius + layer["thickness"]

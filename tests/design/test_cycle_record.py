@@ -201,6 +201,21 @@ def test_alternating_noise_is_no_spike():
     assert not any("single samples" in line for line in warnings)
 
 
+def test_thinning_keeps_extremes_and_ends():
+    """Fewer samples of the same file, with the largest and smallest of all columns."""
+    record = parse_cycle((CYCLES / "gait_knee.csv").read_text(), "gait_knee.csv")
+    few = record.thinned(30)
+    assert record.thinned(record.time.size) is record
+    assert 8 <= few.time.size <= 32
+    rows = np.searchsorted(record.time, few.time)
+    assert (rows[0], rows[-1]) == (0, record.time.size - 1)
+    for name in ("time", "motion", "load", "speed"):
+        whole, some = getattr(record, name), getattr(few, name)
+        assert np.array_equal(some, whole[rows])
+        assert (some.min(), some.max()) == (whole.min(), whole.max())
+    assert few.lines == tuple(record.lines[row] for row in rows)
+
+
 def test_resampling_keeps_the_samples_and_follows_the_spline():
     """21 samples at least: 4 intervals in five parts each; all from the same spline."""
     record = parse_cycle(text(), "x.csv")

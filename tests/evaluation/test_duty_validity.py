@@ -96,7 +96,7 @@ def test_a_design_warns_where_leakage_governs_the_lowest_pressure():
     worst = walking.duty.cycles[0].worst["pressure_a"]
     traces = walking.duty.cycles[0].traces
     share = traces["leakage"][worst.sample] / traces["flow"][worst.sample]
-    assert f"{share:.0%} of the flow" in sentence
+    assert f"{100 * share:.0f} % of the flow" in sentence
     assert f"at {worst.time:.3g} s" in sentence
     assert "run actuator-opt simulate FILE --cycle walk" in sentence
     assert not walking.metrics["duty_suction_ratio"].in_range
@@ -118,7 +118,7 @@ def test_friction_of_film_seals_is_said_to_be_dry():
     assert [metric for metric, _ in found] == list(RUBBING)
     for _, sentence in found:
         assert sentence.startswith("walk: rod seal with an oil film")
-        assert f"{rod / both:.0%} of the friction energy" in sentence
+        assert f"{100 * rod / both:.0f} % of the friction energy" in sentence
 
 
 @pytest.mark.long

@@ -1,9 +1,9 @@
-// What a person does with the page; what it came to stands in #result.
-const TOLD = {};
-const press = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
-const point = (node, kind, x, y) => node.dispatchEvent(new PointerEvent(kind, { clientX: x, clientY: y, bubbles: true, cancelable: true }));
-const told = () => ({ pinned: STATE.pinned, title: byId("design-title").textContent, command: byId("command").textContent, count: COUNT });
-setTimeout(() => {
+// What a person does with the page, event by event; returns the state after each.
+() => {
+  const TOLD = {}, FAULTS = [];
+  const press = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
+  const point = (node, kind, x, y) => node.dispatchEvent(new PointerEvent(kind, { clientX: x, clientY: y, bubbles: true, cancelable: true }));
+  const told = () => ({ pinned: STATE.pinned, title: byId("design-title").textContent, command: byId("command").textContent, count: COUNT });
   TOLD.began = told();
   byId("none").click(); TOLD.none = told();
   const scatter = byId("scatter");
@@ -48,7 +48,5 @@ setTimeout(() => {
   TOLD.limits = LIMITS.map((one) => [one.name, one.count]);
   TOLD.commands = Array.from({ length: N }, (_, row) => commandOf(row));
   TOLD.wide = document.documentElement.scrollWidth;
-  const result = document.createElement("pre"); result.id = "result";
-  result.textContent = JSON.stringify({ faults: FAULTS, ...TOLD });
-  document.body.append(result);
-}, 200);
+  return { faults: FAULTS, ...TOLD };
+}

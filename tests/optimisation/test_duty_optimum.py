@@ -8,6 +8,7 @@ import pytest
 import actuator_opt as ao
 from actuator_opt.evaluation import evaluate
 from actuator_opt.evaluation.kernel import duty_numbers
+from actuator_opt.optimisation import run
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.evaluator import Evaluator
 
@@ -63,6 +64,24 @@ def test_a_limit_over_time_binds_at_an_exact_optimum(actuator: ao.Actuator) -> N
     assert duty.cycles[0].traces["share"].max() == pytest.approx(limit, rel=1e-6)
     dear = [price for price in optimum.sensitivities if "duty_supply_share" in price.parameter]
     assert dear
+
+
+def test_a_search_that_begins_with_few_samples_finds_the_same(
+    actuator: ao.Actuator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A long record: the search begins with some samples, and its optimum holds for all."""
+    tight = actuator.changed({"requirements.duty_supply_share.max": 0.47})
+    whole = ao.optimise(tight, prices=False)
+    monkeypatch.setattr(run, "MANY_SAMPLES", 100)
+    monkeypatch.setattr(run, "FEW_SAMPLES", 24)
+    few = ao.optimise(tight, prices=False)
+    assert few.objective_value == pytest.approx(whole.objective_value, rel=1e-8)
+    assert few.kkt is not None
+    assert few.kkt.residual <= 1e-6
+    assert len(few.starts) == len(whole.starts)
+    duty = few.evaluation.duty
+    assert duty is not None
+    assert duty.cycles[0].traces["share"].max() == pytest.approx(0.47, rel=1e-6)
 
 
 @pytest.mark.long

@@ -60,3 +60,11 @@ def test_places_of_the_limits_worst_first() -> None:
             if limit.metric and limit.limit and len(evaluation.metrics[limit.metric].by_place) > 1
         }
     )
+
+
+def test_a_torque_at_one_position_is_no_limit_of_the_stops() -> None:
+    """The walking knee meets everything, so that no place of a limit has a negative margin."""
+    evaluation = ao.evaluate(ao.read(DESIGNS / "knee_walking.yaml"))
+    assert evaluation.metrics["joint_torque_min"].by_place["retracted"] < 51.3
+    table = next(iter(limits.places(evaluation)))
+    assert not [row.cells for row in table.rows if "−" in str(row.cells[4])]

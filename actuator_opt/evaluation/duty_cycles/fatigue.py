@@ -8,7 +8,7 @@ several duty cycles it also adds one from the smallest to the largest load of th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -17,10 +17,7 @@ from ...base.numeric import Array
 from ...base.symbolic.recorded import RecordedFunction
 from ...models import endurance, rainflow
 from .numbers import LIFE, STRESS, History, SamplePlan
-
-if TYPE_CHECKING:
-    from .results import NearSamples
-    from .samples import SampleResults
+from .samples import NearSamples, SampleResults
 
 Rows = npt.NDArray[np.intp]
 MOST_KNOWN = 1000
@@ -74,6 +71,7 @@ class CycleFatigue:
     Attributes
     ----------
     keys : (cycle, "damage", part) of every result; the cycle is "" for the whole life
+    outputs : results of a sample that the damage needs
     """
 
     def __init__(
@@ -84,6 +82,7 @@ class CycleFatigue:
         outputs: Sequence[str],
     ) -> None:
         self.cycles, self._rows, self._outputs = tuple(cycles), rows, tuple(outputs)
+        self.outputs = [x for x in outputs if x.startswith("pulse_") or x == "position"]
         self._known: dict[bytes, tuple[Array, Array]] = {}
         parts = sorted(enumerate(plan.parts if cycles else ()), key=lambda pair: pair[1].bolted)
         self._loads: tuple[History, ...] = tuple(dict.fromkeys(part.load for _, part in parts))
@@ -159,7 +158,9 @@ class CycleFatigue:
             else np.zeros((parts, *numbers.shape[1:]))
             for k, cycles in enumerate(own)
         ]
-        joined = _Ends(*(np.concatenate(part, axis=1) for part in zip(*whole, strict=True)))
+        joined = whole[0]
+        if len(whole) > 1:
+            joined = _Ends(*(np.concatenate(part, axis=1) for part in zip(*whole, strict=True)))
         return np.concatenate([*blocks, self._damage(numbers, joined)])
 
     def _at(self, counted: _Counted, near: NearSamples) -> tuple[_Ends, _Ends]:

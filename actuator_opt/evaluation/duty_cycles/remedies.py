@@ -184,8 +184,9 @@ def _fatigue(duty: DutyStudy, model: _Model) -> _Lack:
     part = max(model.damage, key=lambda place: model.damage[place])
     shares = {study.name: study.damage.get(part, 0.0) for study in duty.cycles}
     most = max(shares, key=lambda name: shares[name])
-    share = "" if len(shares) == 1 else f", {shares[most] / model.damage[part]:.0%} of it by {most}"
-    damage = f"{model.damage[part]:.3g}{share}"
+    damage = f"{model.damage[part]:.3g}"
+    if len(shares) > 1:
+        damage += f", {100 * shares[most] / model.damage[part]:.0f} % of it by {most}"
     words = f"too little fatigue strength: {part} reaches a damage of {damage}"
     return _Lack("fatigue strength", -1, words)
 

@@ -26,6 +26,7 @@ from .samples import (
     COLUMNS,
     SEAL_SUMS,
     SUMS,
+    NearSamples,
     SampleModel,
     SampleResults,
     leakage_at_rest,
@@ -63,6 +64,8 @@ ENDS: Mapping[str, tuple[str, Sense]] = {
 """Extremes of the whole cycle: the piston has a single farthest position."""
 
 
+FLOW_SUMS = [SUMS.index("ripple_volume"), SUMS.index("flow_total")]
+"""Sums whose weights follow from the flow of all actuators."""
 EXCHANGE = ("exchange_a", "exchange_b")
 """Flows of fresh oil into the chambers."""
 
@@ -197,8 +200,13 @@ class CycleModels:
         wanted = np.ones(len(self.places), dtype=bool) if wanted is None else wanted
         ends = np.cumsum([len(cycle.keys) for cycle in self._cycles.values()])
         parts = dict(zip(self._cycles, np.split(wanted, ends), strict=False))
-        tracks = self.tracks(values)
-        counted = self._fatigue.counted(tracks) if wanted[ends[-1] : -1].any() else {}
+        fatigued = bool(wanted[ends[-1] : -1].any())
+        pulses = self._fatigue.outputs if fatigued else ()
+        tracks = {
+            name: cycle.samples(values, cycle.needed(parts[name], pulses))
+            for name, cycle in self._cycles.items()
+        }
+        counted = self._fatigue.counted(tracks) if fatigued else {}
         blocks: list[Array] = []
         near: dict[str, NearSamples] = {}
         for name, cycle in self._cycles.items():
@@ -211,10 +219,13 @@ class CycleModels:
             blocks.append(self._fatigue.damages(values, seeds, counted, near, some))
         else:
             blocks.append(np.zeros((len(self._fatigue.keys), *shape)))
-        u = dict(zip(self.names, stepped(values, seeds), strict=True))
-        rest = np.broadcast_to(leakage_at_rest(self.plan, u), (shape[0] * max(shape[1] - 1, 1),))
-        blocks.append(duals_of(rest[None], shape[0]))
-        return np.concatenate(blocks)
+        rest = np.zeros((1, *shape))
+        if wanted[-1]:
+            u = dict(zip(self.names, stepped(values, seeds), strict=True))
+            columns = shape[0] * max(shape[1] - 1, 1)
+            leakage = np.broadcast_to(leakage_at_rest(self.plan, u), (1, columns))
+            rest = duals_of(leakage, shape[0])
+        return np.concatenate([*blocks, rest])
 
 
 def stepped(values: Array, seeds: Array) -> Array:
@@ -279,11 +290,25 @@ class _Cycle:
     def _blocks(self) -> tuple[tuple[list[Extreme], TimeWindows], ...]:
         return (self._extremes, self.windows), (self._ends, self.whole)
 
-    def samples(self, values: Array) -> SampleResults:
-        """Results of all samples at values (all numbers, designs)."""
+    def needed(self, wanted: Array, more: Sequence[str]) -> Array:
+        """Whether each output is needed for the wanted results, or among `more` (outputs,)."""
+        _, exchange, *picked = np.split(wanted, np.cumsum(self._sizes[:-1]))
+        outputs = self.model.outputs
+        needed = np.array([name in more for name in outputs])
+        needed[outputs.index("position")] |= bool(exchange.any())
+        needed[outputs.index("flow")] |= bool(wanted[FLOW_SUMS].any())
+        for (extremes, _), some in zip(self._blocks, picked, strict=True):
+            kept = np.flatnonzero(some.reshape(len(extremes), -1).any(axis=1))
+            needed[[extremes[k][1] for k in kept]] = True
+        return needed
+
+    def samples(self, values: Array, wanted: Array | None = None) -> SampleResults:
+        """Results of all samples at values (all numbers, designs); None: all outputs."""
         numbers = values[self.order]
-        found = self.model.results(numbers, self._data, np.zeros((*numbers.shape, 0)))
-        return SampleResults(found[..., 0], self.model.outputs)
+        if wanted is None:
+            wanted = np.ones(len(self.model.outputs), dtype=bool)
+        found = self.model.results(numbers, self._data, np.zeros((*numbers.shape, 0)), wanted)
+        return SampleResults(found[..., 0], self.model.outputs, wanted)
 
     def results(
         self,
@@ -344,13 +369,13 @@ class _Cycle:
         marked = np.zeros(count, dtype=bool)
         for part in rows:
             marked[part] = True
-        found = self.model.results(values, self._data[marked], seeds)
+        found = self.model.results(values, self._data[marked], seeds, track.known)
         return NearSamples(found, np.cumsum(marked) - 1)
 
     def _sums(self, values: Array, seeds: Array, track: SampleResults, wanted: Array) -> Array:
         data = np.empty((values.shape[1], *self._wide.shape))
         data[:] = self._wide
-        if wanted[[SUMS.index("ripple_volume"), SUMS.index("flow_total")]].any():
+        if wanted[FLOW_SUMS].any():
             weights = self._supply.weights(track.real("flow"))
             data[:, :, -2], data[:, :, -1] = weights.ripple.T, weights.peak.T
         return self.model.sums(values, data, seeds, wanted)
@@ -402,20 +427,6 @@ class _Picks(NamedTuple):
     """Outputs of the extremes that are taken."""
     rows: npt.NDArray[np.intp]
     """(extremes that are taken, windows and ranks, designs)"""
-
-
-class NearSamples(NamedTuple):
-    """Results with slopes at some samples of a cycle."""
-
-    values: Array
-    """(samples, outputs, designs, 1 + directions)"""
-    places: npt.NDArray[np.intp]
-    """Place of each sample of the cycle among `values`; meaningless for samples left out."""
-
-    def at(self, outputs: Array | int, rows: npt.NDArray[np.intp]) -> Array:
-        """Outputs (..., designs, 1 + directions) at samples (..., designs)."""
-        picked: Array = self.values[self.places[rows], outputs, np.arange(rows.shape[-1])]
-        return picked
 
 
 def _data(record: CycleRecord) -> Array:

@@ -29,9 +29,11 @@ NEIGHBOURS = (
     "motion_before", "load_before", "motion_after", "load_after", "time_weight", "time_share",
     "ripple_weight", "peak_weight",
 )  # fmt: skip
-"""Further columns of data for the sums over a cycle: the samples before and after (at the ends the
-sample itself), the time that belongs to the sample, its share of the period, and the weights of the
-flow in the ripple volume and in the largest flow of all actuators."""
+"""Further columns of data for the sums over a cycle.
+
+They are the samples before and after (at the ends the sample itself), the time of the sample and
+its share of the period, and weights of the flow: in the ripple volume, and in the largest flow of
+all actuators."""
 SUMS = (
     "duration", "way", "volume", "supply_energy", "leakage_energy", "work_out", "work_in",
     "friction_energy", "return_energy", "throttling_energy", "oil_volume", "position_mean",
@@ -109,7 +111,7 @@ def sample(
 def summands(
     plan: SamplePlan, u: Mapping[str, Array], s: Mapping[str, Array], *, linked: bool
 ) -> list[Array]:
-    """Summands of a sample in all `SUMS`, and in `SEAL_SUMS` of each seal; their sums are SI.
+    """Summands of a sample in every one of `SUMS`, and in `SEAL_SUMS` of each seal, SI.
 
     Sums over the motion are those of the trapezoid rule between positions, sums over time those of
     the trapezoid rule in time: a sample has half of the interval before and half of that after it.
@@ -399,10 +401,26 @@ class SampleResults:
     values: npt.NDArray[np.float64]
     """(samples, outputs, designs)"""
     outputs: tuple[str, ...]
+    known: Array
+    """Whether each output was computed (outputs,); others are 0."""
 
     def real(self, name: str) -> npt.NDArray[np.float64]:
         """A result at all samples (samples, designs)."""
         return self.values[:, self.outputs.index(name)]
+
+
+class NearSamples(NamedTuple):
+    """Results with slopes at some samples of a cycle."""
+
+    values: Array
+    """(samples, outputs, designs, 1 + directions)"""
+    places: npt.NDArray[np.intp]
+    """Place of each sample of the cycle among `values`; meaningless for samples left out."""
+
+    def at(self, outputs: Array | int, rows: npt.NDArray[np.intp]) -> Array:
+        """Outputs (..., designs, 1 + directions) at samples (..., designs)."""
+        picked: Array = self.values[self.places[rows], outputs, np.arange(rows.shape[-1])]
+        return picked
 
 
 class SampleModel:
@@ -428,10 +446,7 @@ class SampleModel:
         one = dict.fromkeys((*names, *columns), np.ones(1))
         with np.errstate(all="ignore"):
             self.outputs = tuple(sample(plan, one, one, linked=linked))
-        self._results = self._recorded(
-            columns, lambda u, s: [*sample(plan, u, s, linked=linked).values()]
-        )
-        self._summands: dict[bytes, RecordedFunction] = {}
+        self._functions: dict[tuple[str, bytes], RecordedFunction] = {}
 
     def _recorded(
         self,
@@ -450,7 +465,7 @@ class SampleModel:
 
         return RecordedFunction(rows, labels, np.ones(len(labels)))
 
-    def results(self, numbers: Array, data: Array, seeds: Array) -> Array:
+    def results(self, numbers: Array, data: Array, seeds: Array, wanted: Array) -> Array:
         """Results with slopes (samples, outputs, designs, 1 + directions).
 
         Parameters
@@ -458,11 +473,20 @@ class SampleModel:
         numbers : (numbers, designs)
         data : columns of the samples (samples, columns)
         seeds : changes of the numbers in every direction (numbers, designs, directions)
+        wanted : whether each output is wanted (outputs,); others are 0
         """
+
+        def function(u: Mapping[str, Array], s: Mapping[str, Array]) -> list[Array]:
+            return [*sample(self.plan, u, s, linked=self.linked).values()]
+
         designs = numbers.shape[1]
+        some = self._some("results", self.columns, function, wanted)
         own = np.broadcast_to(data, (designs, *data.shape)).reshape(-1, data.shape[1])
-        results = self._results.duals(numbers.T, own, self._padded(seeds, data.shape[1]))
-        return results.reshape(designs, len(data), -1, 1 + seeds.shape[2]).transpose(1, 2, 0, 3)
+        found = some.duals(numbers.T, own, self._padded(seeds, data.shape[1]))
+        results = np.zeros((len(data), len(wanted), designs, 1 + seeds.shape[2]))
+        found = found.reshape(designs, len(data), -1, 1 + seeds.shape[2])
+        results[:, wanted] = found.transpose(1, 2, 0, 3)
+        return results
 
     def sums(self, numbers: Array, data: Array, seeds: Array, wanted: Array) -> Array:
         """Sums over a cycle with slopes (sums, designs, 1 + directions), in order of `summands`.
@@ -470,21 +494,35 @@ class SampleModel:
         Sums that are not `wanted` (sums,) are 0. `data` has a row of columns and `NEIGHBOURS` for
         every sample of every design (designs, samples, columns).
         """
+
+        def function(u: Mapping[str, Array], s: Mapping[str, Array]) -> list[Array]:
+            return summands(self.plan, u, s, linked=self.linked)
+
         designs, _, width = data.shape
-        key = wanted.tobytes()
-        if key not in self._summands:
-            rows = np.flatnonzero(wanted).tolist()
-
-            def function(u: Mapping[str, Array], s: Mapping[str, Array]) -> list[Array]:
-                every = summands(self.plan, u, s, linked=self.linked)
-                return [every[row] for row in rows]
-
-            self._summands[key] = self._recorded((*self.columns, *NEIGHBOURS), function)
-        own, padded = data.reshape(-1, width), self._padded(seeds, width)
+        some = self._some("summands", (*self.columns, *NEIGHBOURS), function, wanted)
+        found = some.duals(numbers.T, data.reshape(-1, width), self._padded(seeds, width), designs)
         sums = np.zeros((len(wanted), designs, 1 + seeds.shape[2]))
-        found = self._summands[key].duals(numbers.T, own, padded, designs)
         sums[wanted] = found.transpose(1, 0, 2)
         return sums
+
+    def _some(
+        self,
+        name: str,
+        columns: Sequence[str],
+        function: Callable[[Mapping[str, Array], Mapping[str, Array]], list[Array]],
+        wanted: Array,
+    ) -> RecordedFunction:
+        """The wanted results of a function as a recorded function."""
+        key = (name, wanted.tobytes())
+        if key not in self._functions:
+            rows = np.flatnonzero(wanted).tolist()
+
+            def some(u: Mapping[str, Array], s: Mapping[str, Array]) -> list[Array]:
+                every = function(u, s)
+                return [every[row] for row in rows]
+
+            self._functions[key] = self._recorded(columns, some)
+        return self._functions[key]
 
     def _padded(self, seeds: Array, columns: int) -> Array:
         """Seeds of numbers and columns (designs, inputs, directions); data do not change."""

@@ -112,9 +112,10 @@ def _at_leakage(cycle: CycleStudy, *, valve: bool) -> Iterator[tuple[str, str]]:
     for metric in LOWEST:
         yield (
             metric,
-            f"{cycle.name}: at {worst.time:.3g} s, {leakage / flow:.0%} of the flow is leakage, "
-            "which brings the pressures of both chambers closer together; the lowest pressure, "
-            f"{INPUTS['pressure'].text(worst.value, 3)}, leaves this out: run {_simulation(cycle)}",
+            f"{cycle.name}: at {worst.time:.3g} s, {100 * leakage / flow:.0f} % of the flow is "
+            "leakage, which brings the pressures of both chambers closer together; the lowest "
+            f"pressure, {INPUTS['pressure'].text(worst.value, 3)}, leaves this out: "
+            f"run {_simulation(cycle)}",
         )
 
 
@@ -130,7 +131,7 @@ def _dry_friction(cycle: CycleStudy, films: Mapping[str, str]) -> Iterator[tuple
             metric,
             f"{cycle.name}: {' and '.join(films)} with an oil film: friction along a duty cycle is "
             "that of dry contact with the friction coefficient of the seal, "
-            f"{dry / total:.0%} of the friction energy",
+            f"{100 * dry / total:.0f} % of the friction energy",
         )
 
 
