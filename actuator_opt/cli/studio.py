@@ -43,7 +43,7 @@ def studio(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Drag a requirement on a local page, and the best design follows.
+    """Drag requirements on a page; the best design follows.
 
     The page shows the section, masses, prices and trade-offs. It saves beside the design, and
     reports to --out. Ctrl-C ends the studio and prints the command that finds the same design.

@@ -76,9 +76,9 @@ class Studio:
         self._moved: tuple[dict[str, float], Session] | None = None
         self._base: dict[str, float] = {}
         self._session: Session | None = None
-        self._open()
+        self._opening = self._opened()
 
-    def _open(self) -> None:
+    def _opened(self) -> Optimisation:
         """Find the optimum of the design as read, or else its nearest miss."""
         try:
             self._session = session(self.actuator, seed=self._seed)
@@ -86,16 +86,15 @@ class Studio:
             nearest = optimise(self.actuator, seed=self._seed, prices=False)  # or its fault
             if nearest.optimum or nearest.infeasibility is None:
                 raise
-            self._last = {}, nearest
-        else:
-            self._last = {}, self._session.optimum
+            return nearest
+        return self._session.optimum
 
     # ---- what the page shows ----
 
     def describe(self) -> dict[str, Any]:
         """Names and numbers of the design that no wish changes."""
         design = self.actuator.design
-        optimum = self._optimum({}, _never)
+        optimum = self._opening
         rows = [
             self._number(path, value)
             for path, value in numbers(design).items()
@@ -148,11 +147,16 @@ class Studio:
         """
         changed = self._si(changes)
         result = self._optimum(changed, stop)
-        data = self._shown(result) | {"changes": changed}
+        card = {}
         if explain and not result.optimum:
-            data["card"] = self._card(changed, stop)
+            if result.infeasibility is None:
+                result = self._search(changed, stop)
+            if result.optimum:  # the long search found a design that the quick one missed
+                self._last = changed, result
+            else:
+                card = {"card": self._card(result, changed)}
         self.present = changed
-        return data
+        return self._shown(result) | {"changes": changed} | card
 
     def _si(self, changes: Numbers) -> dict[str, float]:
         """The changes in SI, checked; without those that change nothing."""
@@ -174,6 +178,8 @@ class Studio:
         return found
 
     def _optimum(self, changed: dict[str, float], stop: Stop) -> Optimisation:
+        if not changed:
+            return self._opening
         if self._last is not None and self._last[0] == changed:
             return self._last[1]
         if self._session is None:
@@ -212,12 +218,8 @@ class Studio:
         with watched(watch):
             return optimise(self.actuator.changed(changed), seed=self._seed, prices=False)
 
-    def _card(self, changed: Mapping[str, float], stop: Stop) -> str:
+    def _card(self, result: Optimisation, changed: Mapping[str, float]) -> str:
         """The text of the terminal if nothing fits: the nearest miss, and changes that help."""
-        last = None if self._last is None else self._last[1]
-        result = self._search(changed, stop) if last is None or not last.infeasibility else last
-        if result.infeasibility is None:  # a whole search finds what a warm one has missed
-            return "A longer search found a design. Move the slider a little to see one near it."
         again = shlex.join([*self._words, *self._settings(changed)])
         return results.card(
             result, {"again": again, "written": False},

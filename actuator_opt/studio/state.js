@@ -99,7 +99,7 @@ async function rest() {
       const data = await ask("solve", { changes, explain: true });
       if (stale()) return;
       if (data.dropped) settle();
-      else { S.shown = data; paint(); }
+      else truth(data, S.changes);
     }
     return;
   }

@@ -214,6 +214,10 @@ def test_nothing_fits(studio, monkeypatch):
     monkeypatch.setattr(model, "optimise", endless)
     with pytest.raises(Dropped):  # a newer wish ends the search for what would help
         studio.solve(wish, wished.is_set, explain=True)
+    monkeypatch.setattr(model, "optimise", lambda *given, **how: studio._opening)
+    assert studio.solve(wish, never, explain=True)["feasible"]  # the long search found a design
+    monkeypatch.undo()
+    studio._last = None
     assert studio.solve({}, never)["feasible"]
 
 
