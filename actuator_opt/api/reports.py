@@ -257,16 +257,26 @@ def save(
     of the file.
     """
     from ..base.files import write_text
+
+    return write_text(Path(path), saved_text(design, Path(path).parent, source))
+
+
+def saved_text(
+    design: Actuator | Design | Evaluation | Optimisation | str | Path,
+    folder: Path,
+    source: FileSource | None = None,
+) -> str:
+    """The text that `save` writes to a file in this folder."""
     from ..design.data_file import moved
     from ..design.writer import to_yaml
     from ..optimisation.result import Optimisation
 
-    metrics, folder = None if source is None else source.metrics, Path(path).parent
+    metrics = None if source is None else source.metrics
     if isinstance(design, Optimisation):
         text = to_yaml(moved(design.best, folder), source, metrics=metrics)
         if design.optimum and design.best_evaluation.metrics.keys() <= METRICS.keys():
             text = stamped(text, design.best_evaluation.spec_hash)
-        return write_text(Path(path), text)
+        return text
     if isinstance(design, str | Path):
         design = as_actuator(design)
     elif isinstance(design, Evaluation):
@@ -275,4 +285,4 @@ def save(
         source = source or design.source
         metrics = with_own(design.plugins)
         design = design.design
-    return write_text(Path(path), to_yaml(moved(design, folder), source, metrics=metrics))
+    return to_yaml(moved(design, folder), source, metrics=metrics)

@@ -327,6 +327,7 @@ class Session(OneLine):
             subject, problem, solution, prices=False, seed=self._seed, began=began
         )
         moved._start(actuator, self._seed, WarmStart(problem, solution, self._warm.effort))
+        moved._differentiable |= self._differentiable  # keys and words decide it
         return moved
 
     def predict(self, changes: Changes) -> Prediction:

@@ -269,7 +269,7 @@ def _part(path: Path) -> Iterator[int]:
         raise InputError(Diagnostic(message, "choose another file or folder", str(path)))
     with writing(path), private_part(path.parent) as (file, part):
         yield file.fileno()
-        _publish(file)
+        publish(file)
         part.replace(path)
 
 
@@ -300,7 +300,7 @@ def make_private(path: Path) -> None:
         os.close(os.open(os.path.realpath(path), _CREATE, _PRIVATE))
 
 
-def _publish(file: FileIO) -> None:
+def publish(file: FileIO) -> None:
     """Give the file the usual permissions of new files (from the umask), and close it."""
     mask = os.umask(0o077)
     os.umask(mask)
@@ -342,7 +342,7 @@ def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the r
                 parts.append((part, folder / name))
                 with open(file.fileno(), "wb", closefd=False) as stream:
                     stream.write(content)
-                _publish(file)
+                publish(file)
             for _, target in parts:
                 if target.is_dir():
                     raise IsADirectoryError(errno.EISDIR, "a folder has this name", str(target))

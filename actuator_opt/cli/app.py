@@ -35,6 +35,7 @@ COMMANDS = {
     "sweep": "sweep",
     "explore": "sweep",
     "pareto": "optimise",
+    "studio": "studio",
     "seal": "studies",
     "simulate": "studies",
     "identify": "records",

@@ -23,6 +23,7 @@ PACKAGES = (
     "design",
     "evaluation",
     "explorer",
+    "studio",
     "exports",
     "finite_elements",
     "friction",

@@ -1,0 +1,266 @@
+// Paint what is known, and take what is done on the page.
+const FIXED = 8;
+
+function objectiveText(si, about) {
+  const text = withUnit(trimmed(shown(S.goal, si), 4), S.goal.unit);
+  return `${about ? "about " : ""}${S.goal.mass ? "" : `${S.goal.label} `}${text}`;
+}
+function paint() {
+  const { shown: truthNow } = S, forecast = predicted(), current = S.shownFor === keyOf(S.changes);
+  const design = truthNow.feasible || !S.good ? truthNow : S.good;
+  document.body.classList.toggle("stale", !truthNow.feasible && current);
+  document.body.classList.toggle("about", !current && !(forecast && forecast.section));
+  const objective = forecast ? forecast.objective : design.objective;
+  const nothing = current && !truthNow.feasible;
+  byId("objective").textContent = nothing ? "nothing fits" : objective === null ? "no objective" : `${objectiveText(objective, forecast)}${current || forecast ? "" : " …"}`;
+  byId("objective").className = current ? "" : "about";
+  const pinned = S.A && S.A.shown;
+  byId("against").textContent = pinned && !nothing && objective !== null && (current || forecast) ? `A ${objectiveText(pinned.objective)}, ${signed((objective - pinned.objective) * S.goal.factor, 3)}` : "";
+  drawSection(forecast && forecast.section ? forecast.section : design.section, pinned && pinned.section);
+  if (nothing) byId("lengths").textContent = S.good ? "The last design that fits is shown in grey." : "Nothing fits: the nearest miss is shown in grey.";
+  byId("card").hidden = !nothing;
+  byId("card").textContent = nothing ? truthNow.card ?? `${truthNow.sentence}\nLooking for what would help …` : "";
+  byId("disk").hidden = !truthNow.changed_on_disk;
+  byId("disk").textContent = truthNow.changed_on_disk ? `${S.design.file} has changed on disk since it was opened. The studio goes on with what it read, and will not overwrite the file.` : "";
+  if (current) { paintMasses(design, pinned); paintDimensions(design, pinned); paintHolds(truthNow); }
+  paintPrices();
+  paintButtons();
+}
+function paintTable(id, rows) {
+  const most = Math.max(...rows.flatMap((row) => [row.share, row.before ?? 0]), 1e-12);
+  byId(id).replaceChildren(...rows.map((row) => {
+    const bar = shape("svg", { viewBox: "0 0 100 10", preserveAspectRatio: "none", "aria-hidden": "true" });
+    bar.append(shape("rect", { class: "now", x: 0, y: 1, width: 100 * Math.max(row.share, 0) / most, height: 8 }));
+    if (row.before !== undefined) bar.append(shape("path", { class: "was", d: `M${100 * row.before / most} 0V10` }));
+    return node("tr", {}, node("th", { scope: "row", textContent: row.name }), node("td", { className: "bar-cell" }, bar),
+      node("td", { className: "number", textContent: row.now }), node("td", { className: "number a", textContent: row.was ?? "" }), node("td", { className: "number a", textContent: row.difference ?? "" }));
+  }));
+}
+function compared(scale, now, was, digits = 4) {
+  const text = (si) => withUnit(trimmed(shown(scale, si), digits), scale.unit), step = was === undefined ? 0 : (now - was) * scale.factor;
+  return { now: text(now), ...(was === undefined ? {} : { was: text(was), difference: Math.abs(step) < 1e-6 * Math.abs(shown(scale, now)) ? "–" : signed(step, 3) }) };
+}
+function paintMasses(design, pinned) {
+  const scale = { offset: 0, factor: 1000, unit: "g" }, before = new Map(pinned ? pinned.masses.map((one) => [one.part, one.mass]) : []);
+  const gone = pinned ? pinned.masses.filter((one) => !design.masses.some((other) => other.part === one.part)).map((one) => ({ part: one.part, mass: 0 })) : [];
+  const rows = [...design.masses, ...gone].map(({ part, mass }) => {
+    const was = pinned ? before.get(part) ?? 0 : undefined;
+    return { name: part, share: mass, before: was, ...compared(scale, mass, was) };
+  });
+  rows.sort((a, b) => b.share - a.share);
+  paintTable("masses", rows);
+  byId("masses").append(node("tr", {}, node("th", { scope: "row" }, node("strong", { textContent: "all" })), node("td"),
+    ...Object.entries(compared(scale, design.mass, pinned ? pinned.mass : undefined)).map(([key, text]) => node("td", { className: key === "now" ? "number" : "number a", textContent: text }))));
+}
+function paintDimensions(design, pinned) {
+  paintTable("dimensions", S.design.dimensions.map((row) => {
+    const now = design.dimensions[row.path], was = pinned ? pinned.dimensions[row.path] : undefined;
+    const share = (si) => Math.min(Math.max((si - row.low) / (row.high - row.low), 0), 1);
+    return { name: row.label, share: share(now), before: was === undefined ? undefined : share(was), ...compared(row, now, was) };
+  }));
+}
+function paintHolds(design) {
+  byId("holds-title").textContent = design.feasible ? "What holds it" : "What is missed, and what holds it";
+  byId("holds").replaceChildren(...design.holds.map((row) => node("tr", { className: row.missed ? "missed" : "" },
+    node("td", { textContent: row.missed ? `${row.name}: ${row.value}, missed` : row.name }), node("td", { textContent: row.limit }), node("td", { textContent: row.where }))));
+}
+function paintPrices() {
+  if (!S.goal) return;
+  const goal = { ...S.goal, now: S.good ? S.good.objective : 1 };
+  for (const [path, slider] of S.sliders) {
+    const priced = S.priced && S.priced.prices.get(path), fits = priced && keyOf(S.priced.changes, path) === keyOf(S.changes, path);
+    const edges = slider.paint(fits ? priced : null, curveOf(path));
+    slider.tell(priced, goal, edges, priced && S.priced.key !== keyOf(S.changes));
+  }
+  paintTrade();
+}
+function paintTrade() {
+  const slider = S.sliders.get(byId("across").value), up = byId("up").value;
+  if (!slider || !S.good) return;
+  const dimension = S.design.dimensions.find((row) => row.path === up), scale = dimension || S.goal;
+  const y = (si) => (si === null || si === undefined ? null : shown(scale, si)), pick = (design) => (dimension ? design.dimensions[up] : design.objective);
+  const points = curveOf(slider.row.path).map((one) => ({ x: one.x, y: y(one.y === null ? null : dimension ? one.dimensions[up] : one.y) }));
+  const marks = [], name = dimension ? dimension.label : S.goal.label;
+  if (S.A) marks.push({ x: S.A.changes[slider.row.path] ?? slider.file, y: y(pick(S.A.shown)), kind: "was", name: "A" });
+  if (S.shown.feasible && S.shownFor === keyOf(S.changes)) marks.push({ x: slider.value, y: y(pick(S.shown)), kind: "now", name: "now" });
+  drawTrade(points, marks, withUnit(slider.row.label, slider.row.unit && `[${slider.row.unit}]`), withUnit(name, scale.unit && `[${scale.unit}]`));
+  const found = points.filter((one) => one.y !== null);
+  const told = found.length > 1 ? `${name} ${withUnit(trimmed(found[0].y), scale.unit)} at ${slider.text(found[0].x, 4)}, ${withUnit(trimmed(found[found.length - 1].y), scale.unit)} at ${slider.text(found[found.length - 1].x, 4)}. Every point is an optimum.` : "";
+  byId("trade-text").textContent = told;
+  byId("trade").setAttribute("aria-label", told || "No curve yet");
+}
+function paintButtons() {
+  const current = S.shownFor === keyOf(S.changes), fits = S.shown && S.shown.feasible && current;
+  byId("undo").disabled = !S.past.length;
+  byId("redo").disabled = !S.future.length;
+  byId("pin").disabled = !S.A && !fits;
+  byId("pin").textContent = S.A ? "Unpin A" : "Pin A";
+  byId("pin").setAttribute("aria-pressed", String(Boolean(S.A)));
+  byId("swap").disabled = !S.A || !fits;
+  byId("save").disabled = byId("report").disabled = !fits;
+  document.body.classList.toggle("pinned", Boolean(S.A));
+}
+function announce() {
+  const names = S.shown.holds.slice(0, 3).map((row) => row.name);
+  byId("live").textContent = S.shown.feasible ? `${objectiveText(S.shown.objective)}, held by ${names.join(", ")}` : "Nothing fits.";
+}
+function note(text) {
+  byId("note").textContent = text;
+  byId("note").hidden = !text;
+}
+
+// ---- acts ----
+const ACTS = {
+  move(slider) {
+    change(slider.row.path, slider.value);
+    slider.refuse("");
+    if (S.touched.path !== slider.row.path) S.touched = { path: slider.row.path, key: false, time: 0 };
+    note("");
+    paint();
+    solve();
+  },
+  commit(slider, key) { commit(slider.row.path, key); },
+  focus(slider) {
+    if (S.focused === slider.row.path) return;
+    S.focused = slider.row.path;
+    if (S.shown && !LINE.active) settle();
+  },
+  async typed(slider, text) {
+    const { path } = slider.row;
+    byId("main").setAttribute("aria-busy", "true");
+    try {
+      const data = await ask("solve", { changes: { ...wishes(S.changes), [path]: slider.typedWish(text) } });
+      slider.refuse("");
+      if (data.dropped) return;  // a slider was moved meanwhile
+      change(path, path in data.changes ? exact(shown(slider.row, data.changes[path])) : slider.file);
+      S.touched = { path, key: false, time: 0 };
+      commit(path);
+      slider.show(S.changes[path] ?? slider.file);
+      LINE.latest++;
+      truth(data, S.changes);
+    } catch (fault) {
+      if (!(fault instanceof Unfit)) throw fault;
+      slider.refuse(fault.message);
+      if (!LINE.active) byId("main").setAttribute("aria-busy", "false");
+    }
+  },
+};
+function pin() {
+  if (!S.A && byId("pin").disabled) return;
+  S.A = S.A ? null : { changes: S.changes, shown: S.shown };
+  paint();
+}
+function swap() {
+  if (byId("swap").disabled) return;
+  const now = { changes: S.changes, shown: S.shown };
+  S.changes = S.A.changes;
+  S.A = now;
+  commit();
+  showChanges();
+}
+const undo = () => { if (!byId("undo").disabled) { travel(S.past, S.future); paintButtons(); } };
+const redo = () => { if (!byId("redo").disabled) { travel(S.future, S.past); paintButtons(); } };
+
+// ---- files ----
+let REPLACING = { name: "", sha256: "" };
+function openSave() {
+  if (byId("save").disabled) return;
+  REPLACING = { name: "", sha256: "" };
+  byId("save-note").textContent = "";
+  byId("save-yes").textContent = "Save";
+  byId("file").value ||= S.design.suggested;
+  byId("save-dialog").showModal();
+  byId("file").select();
+}
+async function saveFile() {
+  let name = byId("file").value.trim();
+  if (!name.endsWith(".yaml")) name += ".yaml";
+  const replacing = REPLACING.name === name ? REPLACING.sha256 : "";
+  byId("save-yes").disabled = true;
+  try {
+    const saved = await ask("save", { changes: wishes(S.changes), name, replacing });
+    if (saved.written) {
+      byId("save-dialog").close();
+      note(`Saved ${saved.name} beside ${S.design.file}.`);
+      byId("live").textContent = `Saved ${saved.name}`;
+    } else {
+      REPLACING = saved;
+      byId("save-note").textContent = `Replace ${saved.name}? It exists${replacing ? ", and has changed just now" : ""}.`;
+      byId("save-yes").textContent = "Replace";
+    }
+  } catch (fault) {
+    byId("save-note").textContent = fault.message;
+  } finally {
+    byId("save-yes").disabled = false;
+  }
+}
+async function writeReport() {
+  byId("report").disabled = true;
+  note("The report is being written …");
+  try {
+    const { files } = await ask("report", { changes: wishes(S.changes) });
+    note(`Report: ${files.join(", ")}`);
+  } catch (fault) {
+    note(fault.message);
+  }
+  paintButtons();
+}
+
+// ---- keys ----
+addEventListener("keydown", (event) => {
+  const typing = event.target.matches("input[type=text]");
+  if (document.querySelector("dialog[open]")) {
+    if (event.key === "Enter" && event.target === byId("file")) { event.preventDefault(); saveFile(); }
+    return;
+  }
+  const letter = event.key.toLowerCase();
+  if ((event.ctrlKey || event.metaKey) && !typing && (letter === "z" || letter === "y")) {
+    event.preventDefault();
+    (letter === "y" || event.shiftKey ? redo : undo)();
+  } else if (!event.ctrlKey && !event.metaKey && !event.altKey && !typing && !event.target.matches("select")) {
+    const act = { p: pin, x: swap, s: openSave, "?": () => byId("help-dialog").showModal() }[letter];
+    if (act) { event.preventDefault(); act(); }
+  }
+});
+for (const [id, act] of Object.entries({ undo, redo, pin, swap, save: openSave, report: writeReport, "save-yes": saveFile })) byId(id).addEventListener("click", act);
+byId("file").addEventListener("input", () => { byId("save-yes").textContent = "Save"; byId("save-note").textContent = ""; REPLACING = { name: "", sha256: "" }; });
+byId("save-no").addEventListener("click", () => byId("save-dialog").close());
+byId("help").addEventListener("click", () => byId("help-dialog").showModal());
+byId("help-close").addEventListener("click", () => byId("help-dialog").close());
+byId("across").addEventListener("change", () => { paintTrade(); settle(); });
+byId("up").addEventListener("change", paintTrade);
+addEventListener("resize", () => { if (S.shown) paint(); });
+
+// ---- start ----
+function add(box, row) {
+  const slider = new Slider(row, ACTS);
+  S.sliders.set(row.path, slider);
+  byId(box).append(slider.box);
+  byId("across").append(node("option", { value: row.path, textContent: row.label }));
+}
+function addFixed(ranked) {
+  const dearest = S.design.numbers.filter((row) => ranked.get(row.path) > 0).sort((a, b) => ranked.get(b.path) - ranked.get(a.path)).slice(0, FIXED);
+  byId("fixed").replaceChildren();
+  for (const row of dearest) add("fixed", row);
+  if (!dearest.length) byId("fixed").append(node("p", { className: "hint", textContent: "No fixed number changes the optimum." }));
+}
+async function start() {
+  const hatching = shape("svg", { class: "hidden", "aria-hidden": "true", width: 0, height: 0 });
+  const pattern = shape("pattern", { id: "hatch", width: 5, height: 5, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" });
+  pattern.append(shape("rect", { class: "hatched", width: 5, height: 5 }), shape("path", { class: "hatching", d: "M0 0V5" }));
+  hatching.append(pattern);
+  document.body.append(hatching);
+  const data = await ask("solve", { changes: {}, describe: true });
+  if (data.dropped) { setTimeout(start, CALM); return; }
+  S.design = data.design;
+  S.goal = S.design.goal;
+  document.title = `${S.design.name}: studio`;
+  byId("name").textContent = S.design.name;
+  byId("beside").textContent = S.design.file;
+  const limit = (row) => row.path.startsWith("requirements.");
+  for (const row of S.design.numbers) if (row.asked && limit(row)) add("asked", row);
+  for (const row of S.design.numbers) if (row.asked && !limit(row)) add("asked", row);
+  byId("up").append(node("option", { value: "", textContent: S.goal.label }), ...S.design.dimensions.map((row) => node("option", { value: row.path, textContent: row.label })));
+  truth(data, {});
+}
+start().catch((fault) => { if (!(fault instanceof Unfit)) throw fault; });

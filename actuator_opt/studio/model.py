@@ -1,0 +1,465 @@
+"""Optima, prices, curves and files for the page. Every answer is plain data in SI."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..api import Actuator, Session, optimise, read, report, results, session
+from ..api.reports import saved_text
+from ..base.arguments import Change
+from ..base.errors import Diagnostic, InputError, UsageError
+from ..base.progress import watched
+from ..base.quantities import Quantity
+from ..design import get, quantity_of
+from ..design.paths import numbers, words_of
+from ..design.writer import exact_text
+from ..evaluation import Evaluation
+from ..evaluation.result import Check, Requirement
+from ..metrics import term_of
+from ..optimisation.result import Optimisation
+from ..rendering import text
+from . import section
+from .saving import Saved, digest, save_text
+from .worker import Dropped, Stop
+
+Numbers = Mapping[str, float | str]
+"""Changed numbers by PATH, in SI or as text with a unit, relative to the design as read."""
+CARD_WIDTH = 76
+"""Characters of a line of the card that says what helps if nothing fits."""
+STATED = ("requirements.", "load_cases[")
+"""Beginnings of the PATHs of what is asked; all other numbers are fixed."""
+
+
+class Studio:
+    """A design file, its optimum, and what the page may do with them.
+
+    Not safe for threads: the server calls it from one thread only (see `worker`).
+
+    Parameters
+    ----------
+    path : the design file
+    set, plugins : changed values and user metrics, as for `read`
+    out : folder of reports
+    seed : seed of the searches
+
+    Raises
+    ------
+    InputError : the file has faults, or nothing is free to change
+    UsageError : the design is not a file, or has choices or listed sizes
+    """
+
+    def __init__(
+        self,
+        path: str,
+        *,
+        set: Sequence[Change] = (),
+        plugins: Sequence[Path] = (),
+        out: Path = Path("reports"),
+        seed: int = 0,
+    ) -> None:
+        if path == "-":
+            message = "the studio saves beside the design, so it needs a file"
+            raise UsageError(Diagnostic(message, "name a design file"))
+        self.actuator: Actuator = read(path, set=set, plugins=plugins)
+        self._file = Path(path).resolve()
+        self._digest = digest(self._file)
+        self._out, self._seed = out, seed
+        self._words = [path, *_options("--set", (f"{name}={value}" for name, value in set))]
+        self._words += _options("--plugin", map(str, plugins))
+        self.present: dict[str, float] = {}
+        """Changed numbers of the design that the page showed last."""
+        self._last: tuple[dict[str, float], Optimisation] | None = None
+        self._moved: tuple[dict[str, float], Session] | None = None
+        self._base: dict[str, float] = {}
+        self._session: Session | None = None
+        self._opening = self._opened()
+
+    def _opened(self) -> Optimisation:
+        """Find the optimum of the design as read, or else its nearest miss."""
+        try:
+            self._session = session(self.actuator, seed=self._seed)
+        except InputError:
+            nearest = optimise(self.actuator, seed=self._seed, prices=False)  # or its fault
+            if nearest.optimum or nearest.infeasibility is None:
+                raise
+            return nearest
+        return self._session.optimum
+
+    # ---- what the page shows ----
+
+    def describe(self) -> dict[str, Any]:
+        """Names and numbers of the design that no wish changes."""
+        design = self.actuator.design
+        optimum = self._opening
+        rows = [
+            self._number(path, value)
+            for path, value in numbers(design).items()
+            if path not in design.variables and not path.startswith("materials.")
+        ]
+        stem = self._file.stem
+        return {
+            "name": design.name,
+            "file": self._file.name,
+            "suggested": f"{stem}_studio.yaml",
+            "goal": _goal(optimum),
+            "numbers": [row for row in rows if row is not None],
+            "dimensions": [
+                {"path": row.path, "label": words_of(row.path), "low": row.lower, "high": row.upper}
+                | _scale(quantity_of(row.path, design))
+                for row in optimum.variables
+            ],
+        }
+
+    def _number(self, path: str, value: float) -> dict[str, Any] | None:
+        """A number that the page can change; None for a whole number or a value of zero."""
+        quantity = quantity_of(path, self.actuator.design)
+        shown = quantity.to_display(value)
+        if quantity.dimension == "count" or shown == 0 or not math.isfinite(shown):
+            return None
+        label, sense = words_of(path), ""
+        if path.startswith("requirements."):
+            sense = "≥" if path.endswith(".min") else "≤"
+        elif path.startswith("load_cases["):
+            case = path[len("load_cases[") :].partition("]")[0].replace("_", " ")
+            label = f"{label.removesuffix(f' {case}')}, {case}"
+        return {
+            "path": path,
+            "label": label,
+            "sense": sense,
+            "asked": path.startswith(STATED),
+            "value": value,
+            "lower": quantity.lower if math.isfinite(quantity.lower) else None,
+            "upper": quantity.upper if math.isfinite(quantity.upper) else None,
+            **_scale(quantity),
+        }
+
+    def solve(self, changes: Numbers, stop: Stop, *, explain: bool = False) -> dict[str, Any]:
+        """The optimum with some numbers changed; with `explain` also why nothing fits, if so.
+
+        Raises
+        ------
+        InputError, UsageError : a PATH or a value does not suit the design
+        Dropped : `stop` became true
+        """
+        changed = self._si(changes)
+        result = self._optimum(changed, stop)
+        card = {}
+        if explain and not result.optimum:
+            if result.infeasibility is None:
+                result = self._search(changed, stop)
+            if result.optimum:  # the long search found a design that the quick one missed
+                self._last = changed, result
+            else:
+                card = {"card": self._card(result, changed)}
+        self.present = changed
+        return self._shown(result) | {"changes": changed} | card
+
+    def _si(self, changes: Numbers) -> dict[str, float]:
+        """The changes in SI, checked; without those that change nothing."""
+        if not changes:
+            return {}
+        design = self.actuator.changed(changes).design
+        found = {}
+        for path in changes:
+            if path in design.variables or path.startswith("variables."):
+                message = "is a dimension that the search sets"
+                raise UsageError(Diagnostic(message, "change a requirement instead", path=path))
+            value = get(design, path)
+            if isinstance(value, str) or value is None:
+                raise UsageError(
+                    Diagnostic("is a word", "edit the file, and open it again", path=path)
+                )
+            if value != get(self.actuator.design, path):
+                found[path] = float(value)
+        return found
+
+    def _optimum(self, changed: dict[str, float], stop: Stop) -> Optimisation:
+        if not changed:
+            return self._opening
+        if self._last is not None and self._last[0] == changed:
+            return self._last[1]
+        if self._session is None:
+            return self._first(changed, stop)
+        result = self._session.solve(self._relative(changed), stop=stop)
+        if stop():
+            raise Dropped
+        self._last = changed, result
+        return result
+
+    def _relative(self, changed: Mapping[str, float]) -> dict[str, float]:
+        """The changes as seen from the session, which may stand at other numbers than the file."""
+        as_read = {path: self._as_read(path) for path in self._base}
+        return {**as_read, **changed}
+
+    def _as_read(self, path: str) -> float:
+        value = get(self.actuator.design, path)
+        assert isinstance(value, float | int)
+        return float(value)
+
+    def _first(self, changed: dict[str, float], stop: Stop) -> Optimisation:
+        """The optimum of a design whose file has none, found by a whole search."""
+        result = self._search(changed, stop)
+        if result.optimum:
+            self._session = session(self.actuator.changed(changed), seed=self._seed)
+            self._base = dict(changed)
+            result = self._session.optimum
+        self._last = changed, result
+        return result
+
+    def _search(self, changed: Mapping[str, float], stop: Stop) -> Optimisation:
+        def watch(what: str, share: float | None) -> None:
+            if stop():
+                raise Dropped
+
+        with watched(watch):
+            return optimise(self.actuator.changed(changed), seed=self._seed, prices=False)
+
+    def _card(self, result: Optimisation, changed: Mapping[str, float]) -> str:
+        """The text of the terminal if nothing fits: the nearest miss, and changes that help."""
+        again = shlex.join([*self._words, *self._settings(changed)])
+        return results.card(
+            result, {"again": again, "written": False},
+            colour=False, unicode=True, width=CARD_WIDTH,
+        )  # fmt: skip
+
+    def _shown(self, result: Optimisation) -> dict[str, Any]:
+        """Data of an optimum, or of a nearest miss, that the page shows."""
+        evaluation = result.best_evaluation
+        return {
+            "feasible": result.optimum,
+            "sentence": text.sentence(text.pretty(result.sentence)),
+            "objective": result.objective_value if math.isfinite(result.objective_value) else None,
+            "section": section.drawing(evaluation),
+            "masses": [
+                {"part": part.replace("_", " "), "mass": mass}
+                for part, mass in evaluation.mass_parts.items()
+            ],
+            "mass": evaluation.metrics["mass"].value,
+            "holds": _held(evaluation, result),
+            "dimensions": {row.path: row.value for row in result.variables},
+            "changed_on_disk": self.changed_on_disk(),
+        }
+
+    # ---- prices and curves ----
+
+    def _at(self, changed: dict[str, float]) -> Session:
+        """The session at the optimum with these numbers changed; raises `Unsolvable`."""
+        if self._session is None:
+            raise Dropped
+        if self._moved is None or self._moved[0] != changed:
+            relative = self._relative(changed)
+            standing = relative == self._base
+            moved = self._session if standing else self._session.at(relative)
+            self._moved = changed, moved
+        return self._moved[1]
+
+    def prices(
+        self, changes: Numbers, paths: Sequence[str], stop: Stop, *, draw: bool = False
+    ) -> dict[str, Any]:
+        """Prices at the optimum; numbers without a price are left out.
+
+        Parameters
+        ----------
+        changes : changed numbers
+        paths : PATHs of the numbers to price
+        stop : true once nobody wants the answer
+        draw : whether to add how the section moves with each number
+
+        Raises
+        ------
+        Unsolvable : there is no design with these numbers
+        """
+        moved = self._at(self._si(changes))
+        found = []
+        for path in paths:
+            if stop():
+                raise Dropped
+            try:
+                found.append(moved.price(path))
+            except UsageError:
+                continue
+        rows: list[dict[str, Any]] = [
+            {
+                "path": price.path,
+                "value": price.value,
+                "down": price.slope_down,
+                "up": price.slope_up,
+                "low": price.holds[0],
+                "high": price.holds[1],
+                "below": _plain(price.changes[0]),
+                "above": _plain(price.changes[1]),
+                "movement": price.movement,
+            }
+            for price in found
+        ]
+        if draw:
+            drawn = section.slopes(
+                moved.optimum.evaluation, [(x.path, x.value, x.movement) for x in found]
+            )
+            for row, slopes in zip(rows, drawn, strict=True):
+                row["section"] = slopes
+        return {"prices": rows}
+
+    def curve(
+        self, changes: Numbers, path: str, values: Sequence[float], stop: Stop
+    ) -> dict[str, Any]:
+        """Optima for some values of one number; objective None for a value without a design.
+
+        Raises
+        ------
+        Unsolvable : there is no design with these changes
+        InputError, UsageError : as for `solve`
+        """
+        changed = self._si(changes)
+        curve = self._at(changed).curve(path, list(values), stop=stop)
+        if stop():
+            raise Dropped
+        return {
+            "values": curve.values,
+            "objectives": curve.objectives,
+            "dimensions": [dict(row) for row in curve.variables],
+        }
+
+    # ---- files ----
+
+    def changed_on_disk(self) -> bool:
+        """Whether the design file is no longer what was read, or is gone."""
+        try:
+            return digest(self._file) != self._digest
+        except InputError:
+            return True
+
+    def save(self, changes: Numbers, name: str, replacing: str | None) -> Saved:
+        """Save the optimum beside the design; comments of the design file are kept.
+
+        Parameters
+        ----------
+        changes : changed numbers
+        name : plain name of the file
+        replacing : SHA-256 of the existing file that may be replaced
+
+        Raises
+        ------
+        InputError : the design file has changed on disk and would be replaced, or nothing fits
+        UsageError : the name is not a plain one
+        """
+        changed = self._si(changes)
+        result = self._optimum(changed, _never)
+        if not result.optimum:
+            message = "nothing fits, so there is no optimum to save"
+            raise InputError(Diagnostic(message, "ask for less first"))
+        folder = self._file.parent
+        own = (folder / name).exists() and (folder / name).samefile(self._file)
+        if own and self.changed_on_disk():
+            message = "has changed on disk since the studio opened it, and is not overwritten"
+            raise InputError(Diagnostic(message, "save under another name", name))
+        content = saved_text(result, folder, self.actuator.source)
+        saved = save_text(folder, name, content, replacing)
+        if own and saved.written:
+            self._digest = saved.sha256
+        return saved
+
+    def report(self, changes: Numbers) -> list[str]:
+        """Write the report of the optimum; return the paths of its files."""
+        changed = self._si(changes)
+        if self._session is None or not self._optimum(changed, _never).optimum:
+            message = "nothing fits, so there is no optimum to report"
+            raise InputError(Diagnostic(message, "ask for less first"))
+        result = self._session.solve(self._relative(changed), prices=True)
+        actuator = self.actuator.changed(changed)
+        files = report(result, folder=self._out, actuator=actuator, command=self.command(changed))
+        return [str(file.path) for file in files]
+
+    def command(self, changed: Mapping[str, float] | None = None) -> str:
+        """The command line that finds the same design; by default that shown last."""
+        settings = self._settings(self.present if changed is None else changed)
+        return shlex.join(["actuator-opt", "optimise", *self._words, *settings])
+
+    def _settings(self, changed: Mapping[str, float]) -> list[str]:
+        design = self.actuator.design
+        return _options(
+            "--set",
+            (
+                f"{path}={exact_text(value, quantity_of(path, design))}"
+                for path, value in changed.items()
+            ),
+        )
+
+
+def _never() -> bool:
+    return False
+
+
+def _options(name: str, values: Any) -> list[str]:
+    return [word for value in values for word in (name, value)]
+
+
+def _scale(quantity: Quantity) -> dict[str, Any]:
+    """Unit of a quantity: displayed value = offset + factor * SI value."""
+    offset = quantity.to_display(0.0)
+    return {
+        "unit": text.unit_text(quantity.unit),
+        "typed": quantity.unit,
+        "offset": offset,
+        "factor": quantity.to_display(1.0) - offset,
+    }
+
+
+def _goal(optimum: Optimisation) -> dict[str, Any]:
+    """Name, unit and direction of the objective."""
+    name = optimum.objective_metric
+    metric = optimum.best_evaluation.metrics.get(name)
+    objective = optimum.design.objective
+    plain = {"unit": "", "typed": "", "offset": 0.0, "factor": 1.0}
+    scale = plain if metric is None else _scale(metric.quantity)
+    label = "objective" if metric is None else term_of(name)
+    maximise = objective is not None and objective.aim == "max"
+    return {"label": label, "mass": name == "mass", "maximise": maximise, **scale}
+
+
+def _plain(change: str | None) -> str | None:
+    """Which limit becomes active or inactive, in words for a reader."""
+    return None if change is None else text.pretty(change.replace("_", " "))
+
+
+def _held(evaluation: Evaluation, result: Optimisation) -> list[dict[str, Any]]:
+    """Missed limits, then limits and bounds that are active at the optimum."""
+    active = () if result.kkt is None else result.kkt.active
+    required = {(row.metric, row.sense) for row in evaluation.requirements}
+    limits: list[Requirement | Check] = [*evaluation.requirements]
+    limits += [x for x in evaluation.checks if not x.advice and (x.metric, x.sense) not in required]
+    limits.sort(key=lambda row: row.state != "missed")
+
+    def holds(row: Requirement | Check) -> bool:
+        names = (row.name, row.metric or row.name)
+        return row.state == "no_reserve" and any(x.startswith(names) for x in active)
+
+    rows = [
+        {
+            "name": term_of(row.metric) if row.metric else row.name,
+            "limit": text.limit_text(text.metric(row.metric or ""), row.sense, row.limit),
+            "value": "" if row.value is None else text.value_text(
+                text.metric(row.metric or ""), row.value
+            ),
+            "where": text.brief(row.case, row.place),
+            "missed": row.state == "missed",
+        }
+        for row in limits
+        if row.limit is not None and row.metric and (row.state == "missed" or holds(row))
+    ]  # fmt: skip
+    design = evaluation.design
+    return rows + [
+        {
+            "name": words_of(row.path),
+            "limit": f"{row.at_bound} bound",
+            "value": quantity_of(row.path, design).text(row.value),
+            "where": "",
+            "missed": False,
+        }
+        for row in result.variables
+        if row.at_bound
+    ]

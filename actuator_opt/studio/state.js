@@ -1,0 +1,189 @@
+// What is asked now, what was answered, and the way from one to the other.
+// Changes are kept in display units by PATH, relative to the file.
+const PATIENCE = 400, CALM = 250, MOST_UNDO = 200, CHUNK = 5, MERGE = 800;
+const S = {
+  design: null, goal: null, sliders: new Map(), changes: {}, committed: {}, past: [], future: [],
+  shown: null, shownFor: "", good: null, A: null, priced: null, curves: new Map(), focused: "", touched: { path: "", key: false, time: 0 },
+};
+
+const keyOf = (changes, without) => JSON.stringify(Object.keys(changes).filter((path) => path !== without).sort().map((path) => [path, changes[path]]));
+const wishes = (changes) => Object.fromEntries(Object.entries(changes).map(([path, value]) => [path, S.sliders.get(path).wish(value)]));
+
+function change(path, value) {
+  const next = { ...S.changes };
+  if (value === S.sliders.get(path).file) delete next[path];
+  else next[path] = value;
+  S.changes = next;
+}
+
+// ---- one request under way; the newest wish waits, or replaces a slow one ----
+const LINE = { latest: 0, active: 0, started: 0, waiting: false, timer: 0 };
+
+function solve() {
+  clearTimeout(REST.timer);
+  const left = PATIENCE - (performance.now() - LINE.started);
+  if (LINE.active && left > 0) {
+    LINE.waiting = true;
+    if (!LINE.timer) LINE.timer = setTimeout(() => { LINE.timer = 0; if (LINE.waiting) solve(); }, left);
+    return;
+  }
+  LINE.waiting = false;
+  request();
+}
+async function request() {
+  const serial = ++LINE.latest, changes = S.changes;
+  LINE.active++;
+  LINE.started = performance.now();
+  byId("main").setAttribute("aria-busy", "true");
+  let data = null, why = "";
+  try { data = await ask("solve", { changes: wishes(changes) }); } catch (fault) { why = fault.message; }
+  LINE.active--;
+  const newest = serial === LINE.latest;
+  if (LINE.waiting && !LINE.active) { LINE.waiting = false; clearTimeout(LINE.timer); LINE.timer = 0; request(); }
+  if (!newest) return;
+  if (!data) {
+    const slider = S.sliders.get(S.touched.path);
+    if (slider) slider.refuse(why);
+    return;
+  }
+  if (data.dropped) { setTimeout(solve, CALM); return; }
+  truth(data, changes);
+}
+function truth(data, changes) {
+  S.shown = data;
+  S.shownFor = keyOf(changes);
+  if (data.feasible) S.good = data;
+  S.sliders.get(S.touched.path)?.refuse("");
+  paint();
+  if (S.shownFor === keyOf(S.changes)) {
+    byId("main").setAttribute("aria-busy", "false");
+    settle();
+  }
+}
+
+// ---- forecast: by the price as long as it holds, else along the curve ----
+function predicted() {
+  const now = keyOf(S.changes);
+  if (!S.priced || now === S.shownFor) return null;
+  const paths = [...new Set([...Object.keys(S.changes), ...Object.keys(S.priced.changes)])];
+  const different = paths.filter((path) => S.changes[path] !== S.priced.changes[path]);
+  if (different.length !== 1) return null;
+  const [path] = different, slider = S.sliders.get(path), price = S.priced.prices.get(path);
+  const si = (slider.value - slider.row.offset) / slider.row.factor;
+  if (price && (price.low === null || si >= price.low) && (price.high === null || si <= price.high)) {
+    const step = si - price.value, slope = step > 0 ? price.up : price.down, { section, objective } = S.priced.shown;
+    if (slope !== null) return {
+      objective: objective + slope * step,
+      section: price.section && { ...section, numbers: section.numbers.map((one, k) => one + step * price.section[k]) },
+    };
+  }
+  const points = curveOf(path), k = points.findIndex((one) => one.x >= slider.value);
+  if (k < 1 || points[k].y === null || points[k - 1].y === null) return null;
+  const [from, to] = [points[k - 1], points[k]], share = (slider.value - from.x) / (to.x - from.x);
+  return { objective: from.y + share * (to.y - from.y), section: null };
+}
+
+// ---- at rest: prices, the card if nothing fits, curves nearest first ----
+const REST = { timer: 0, ranked: new Map(), done: false };
+
+function settle() {
+  clearTimeout(REST.timer);
+  REST.timer = setTimeout(() => rest().catch((fault) => { if (!(fault instanceof Unfit)) throw fault; }), CALM);
+}
+async function rest() {
+  const key = keyOf(S.changes), changes = wishes(S.changes), stale = () => key !== keyOf(S.changes) || LINE.active;
+  if (stale() || !S.shown) return;
+  if (!S.shown.feasible) {
+    announce();
+    if (S.shown.card === undefined) {
+      const data = await ask("solve", { changes, explain: true });
+      if (stale()) return;
+      if (data.dropped) settle();
+      else truth(data, S.changes);
+    }
+    return;
+  }
+  const standing = { key, changes: S.changes, shown: S.shown };
+  const answer = await ask("prices", { changes, paths: [...S.sliders.keys()], draw: true });
+  if (stale()) return;
+  if (answer.dropped) { settle(); return; }
+  if (answer.infeasible) return;
+  S.priced = { ...standing, prices: new Map(answer.prices.map((one) => [one.path, one])) };
+  paintPrices();
+  announce();
+  if (!REST.done && !(await rank(changes, stale))) return;
+  for (const path of new Set([S.focused, byId("across").value])) if (path && !(await trace(path, changes, stale))) return;
+}
+// Price all fixed numbers once; those that matter most get sliders.
+async function rank(changes, stale) {
+  const left = S.design.numbers.filter((row) => !row.asked && !REST.ranked.has(row.path)).map((row) => row.path);
+  while (left.length) {
+    const paths = left.splice(0, 2 * CHUNK), answer = await ask("prices", { changes, paths });
+    if (stale()) return false;
+    if (answer.dropped || answer.infeasible) { settle(); return false; }
+    const found = new Map(answer.prices.map((one) => [one.path, one]));
+    for (const path of paths) {
+      const price = found.get(path);
+      REST.ranked.set(path, price ? Math.max(Math.abs(price.up ?? Infinity), Math.abs(price.down ?? Infinity)) * Math.abs(price.value) : 0);
+    }
+  }
+  REST.done = true;
+  addFixed(REST.ranked);
+  settle();
+  return false;
+}
+// The curve of a number, as points in display units in order; empty if other numbers have changed.
+function curveOf(path) {
+  const curve = S.curves.get(path);
+  return curve && curve.key === keyOf(S.changes, path) ? curve.points : [];
+}
+async function trace(path, changes, stale) {
+  const slider = S.sliders.get(path), key = keyOf(S.changes, path);
+  let curve = S.curves.get(path);
+  if (!curve || curve.key !== key) S.curves.set(path, curve = { key, points: [] });
+  const here = slider.value, found = (v) => curve.points.some((one) => one.x === v);
+  const near = slider.values().sort((a, b) => Math.abs(a - here) - Math.abs(b - here));
+  for (;;) {
+    const gaps = curve.points.filter((one) => one.y === null).map((one) => one.x);
+    const beyond = (v) => gaps.some((gap) => (v < here ? v < gap && gap < here : v > gap && gap > here));
+    const left = near.filter((v) => !found(v));
+    const values = left.filter((v) => !beyond(v)).slice(0, CHUNK);
+    if (!values.length) {
+      for (const x of left) curve.points.push({ x, y: null, dimensions: {} });
+      curve.points.sort((a, b) => a.x - b.x);
+      paintPrices();
+      return true;
+    }
+    const answer = await ask("curve", { changes, path, values: values.map((v) => (v - slider.row.offset) / slider.row.factor) });
+    if (stale()) return false;
+    if (answer.dropped) { settle(); return false; }
+    if (answer.infeasible) return false;
+    values.forEach((x, k) => curve.points.push({ x, y: answer.objectives[k], dimensions: answer.dimensions[k] }));
+    curve.points.sort((a, b) => a.x - b.x);
+    paintPrices();
+  }
+}
+
+// ---- whole drags can be undone ----
+// Steps by keys that follow each other closely count as one.
+function commit(path = "", key = false) {
+  if (keyOf(S.changes) === keyOf(S.committed)) return;
+  const now = performance.now(), merged = key && S.touched.key && S.touched.path === path && now - S.touched.time < MERGE;
+  if (!merged) S.past = [...S.past, S.committed].slice(-MOST_UNDO);
+  S.committed = S.changes;
+  S.future = [];
+  S.touched = { path, key, time: now };
+  paintButtons();
+}
+function travel(from, to) {
+  if (!from.length) return;
+  to.push(S.committed);
+  S.changes = S.committed = from.pop();
+  S.touched = { path: "", key: false, time: 0 };
+  showChanges();
+}
+function showChanges() {
+  for (const [path, slider] of S.sliders) { slider.refuse(""); slider.show(S.changes[path] ?? slider.file); }
+  paint();
+  solve();
+}

@@ -1,0 +1,86 @@
+"""Time of the studio in a browser, from a slider's input event to the painted result.
+
+``python benchmarks/studio.py [DESIGN] [MOVES]`` drags the first requirement; it needs Playwright
+and Chromium. The cold solve of the same run is printed beside it, as times depend on the machine.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+from playwright.sync_api import sync_playwright
+
+import actuator_opt as ao
+
+FLAGS = ("--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run")
+MOVE = """async (share) => {
+  const frame = () => new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+  const range = document.querySelector("#asked input[type=range]");
+  const main = document.getElementById("main");
+  const low = Number(range.min), high = Number(range.max);
+  const start = performance.now();
+  range.value = low + share * (high - low);
+  range.dispatchEvent(new Event("input", { bubbles: true }));
+  const about = document.getElementById("objective").textContent.startsWith("about");
+  await frame();
+  const forecast = performance.now() - start;
+  while (main.getAttribute("aria-busy") === "true") await frame();
+  return { truth: performance.now() - start, forecast: about ? forecast : null };
+}"""
+
+
+def cold(design):
+    """Seconds of a cold solve without prices."""
+    actuator = ao.read(design)
+    ao.optimise(actuator, prices=False)
+    start = time.perf_counter()
+    ao.optimise(actuator, prices=False)
+    return time.perf_counter() - start
+
+
+def measured(design, moves):
+    """Milliseconds to the forecast and to the result of each move, between 85 and 108 %."""
+    command = [sys.executable, "-m", "actuator_opt", "studio", design, "--no-browser"]
+    server = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    try:
+        address = server.stdout.readline().split()[-1]
+        with sync_playwright() as driver, tempfile.TemporaryDirectory() as profile:
+            browser = shutil.which("chromium") or shutil.which("google-chrome")
+            context = driver.chromium.launch_persistent_context(
+                profile, executable_path=browser, args=[*FLAGS]
+            )
+            page = context.new_page()
+            page.goto(address)
+            page.locator("#fixed .wish").first.wait_for(timeout=120_000)
+            shares = [0.2 + 0.45 * ((k * 0.618034) % 1) for k in range(moves)]
+            rows = [page.evaluate(MOVE, share) for share in shares]
+            context.close()
+    finally:
+        server.kill()
+        server.wait()
+    return rows
+
+
+def main():
+    """Print median and 95th percentile, in ms and as a share of a cold solve."""
+    design = sys.argv[1] if len(sys.argv) > 1 else "designs/knee.yaml"
+    moves = int(sys.argv[2]) if len(sys.argv) > 2 else 60
+    whole = 1000 * cold(design)
+    rows = measured(design, moves)
+    print(f"{design}, load {os.getloadavg()[0]:.1f}; cold solve {whole:.0f} ms")
+    for name in ("forecast", "truth"):
+        times = sorted(row[name] for row in rows if row[name] is not None)
+        if times:
+            p50, p95 = statistics.median(times), times[int(0.95 * (len(times) - 1))]
+            shares = f"{p50 / whole:.2f} and {p95 / whole:.2f} of cold"
+            print(f"{name}: {len(times)} moves, p50 {p50:.0f} ms, p95 {p95:.0f} ms ({shares})")
+
+
+if __name__ == "__main__":
+    main()
