@@ -58,6 +58,7 @@ function quoted(word) {
 }
 function commandOf(row) {
   const words = [...DATA.command];
+  words[1] = byId("verb").value;
   for (const one of EXACT) {
     const value = one.codes ? one.texts[one.codes[row]] : String(one.values[row]);
     words.push("--set", `${one.path}=${value}`);

@@ -138,6 +138,7 @@ function begin() {
   scatter.addEventListener("keydown", keyed);
   byId("lines").addEventListener("pointerdown", onLines);
   byId("clear").addEventListener("click", () => { STATE.ranges.clear(); refresh(); say(byId("count").textContent); });
+  byId("verb").addEventListener("change", () => describe(STATE.pinned));
   byId("copy").addEventListener("click", () => copy(byId("command").textContent, byId("copy")));
   byId("copy-base").addEventListener("click", () => copy(DATA.design, byId("copy-base")));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);

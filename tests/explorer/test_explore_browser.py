@@ -245,6 +245,17 @@ def test_a_beside_b(page, visit):
     assert opened.locator("#section .other").count() == 0
 
 
+def test_a_point_opens_as_a_studio(page, visit):
+    """The command names the studio instead of the report; its values stay."""
+    opened = visit(page)
+    command = opened.get_by_role("textbox", name="Command")
+    report = shlex.split(command.inner_text())
+    opened.get_by_label("Command for").select_option("studio")
+    studio = shlex.split(command.inner_text())
+    assert studio[:2] == ["actuator-opt", "studio"]
+    assert studio[2:] == report[2:]
+
+
 VIEW = "() => [spanOf(0), spanOf(1)]"
 
 
@@ -327,7 +338,19 @@ def test_by_keyboard_alone(page, visit):
         stops.append(stop)
     assert all(stop[1:] == ["solid", 3, True] for stop in stops)
     ids = [stop[0] for stop in stops]
-    order = ["x", "y", "c", "closer", "farther", "whole", "scatter", "pin", "command", "copy"]
+    order = [
+        "x",
+        "y",
+        "c",
+        "closer",
+        "farther",
+        "whole",
+        "scatter",
+        "pin",
+        "verb",
+        "command",
+        "copy",
+    ]
     assert [one for one in ids if one in order] == order
     assert {"axes", "limits", "csv", "all", "table-box", "heads", "rows", "copy-base"} <= set(ids)
     opened.locator("#scatter").focus()
