@@ -6,7 +6,6 @@ One studio and one browser serve all tests, in order: starting them is most of t
 from __future__ import annotations
 
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -16,16 +15,6 @@ from cli_runner import DESIGNS
 
 import actuator_opt as ao
 
-playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
-BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
-pytestmark = pytest.mark.skipif(
-    BROWSER is None, reason=f"no browser to look with: {', '.join(BROWSERS)}"
-)
-FLAGS = (
-    "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-sync",
-    "--disable-component-update", "--no-first-run",
-)  # fmt: skip
 STIFFNESS = "requirements.stiffness_min.min"
 
 
@@ -68,7 +57,7 @@ class Studio:
 
 
 @pytest.fixture(scope="module")
-def studio(tmp_path_factory):
+def studio(browser, tmp_path_factory):
     """The steel knee in the studio, as a user starts it."""
     folder = tmp_path_factory.mktemp("browser")
     (folder / "steel.yaml").write_text((DESIGNS / "steel_baseline.yaml").read_text("utf-8"))
@@ -78,18 +67,13 @@ def studio(tmp_path_factory):
     )  # fmt: skip
     address = process.stdout.readline().split()[-1]
     try:
-        with playwright.sync_playwright() as driver:
-            try:
-                context = driver.chromium.launch_persistent_context(
-                    tmp_path_factory.mktemp("profile"), executable_path=BROWSER, args=[*FLAGS],
-                    viewport={"width": 1200, "height": 900}, reduced_motion="reduce",
-                )  # fmt: skip
-            except playwright.Error as error:
-                pytest.skip(f"the browser does not run here: {str(error)[-200:]}")
-            one = Studio(folder, context.new_page(), process, address)
-            one.page.goto(address)
-            yield one
-            context.close()
+        context = browser.new_context(
+            viewport={"width": 1200, "height": 900}, reduced_motion="reduce"
+        )
+        one = Studio(folder, context.new_page(), process, address)
+        one.page.goto(address)
+        yield one
+        context.close()
     finally:
         process.kill()
         process.wait()
