@@ -522,6 +522,7 @@ def _faults() -> Iterator[Case]:
         step("report nothing.yaml --out out", looks=1),
         step("report last --out out", looks=1),
         step("explore missing.db --out out", looks=1),
+        step("studio missing.yaml --no-browser", looks=1),
         step("rerun designs/knee_bonded.yaml", looks=1),
         step("materials show al_7075", looks=1),
         step("materials list --kind metals", looks=1),

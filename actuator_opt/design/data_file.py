@@ -169,6 +169,8 @@ class DataFileName(FileName):
 
 def as_read(value: str, what: str) -> DataFile:
     """The value of a key as a data file; raises `InputError` if its file was not read."""
+    if not isinstance(value, DataFile) and "\n" in value:  # the text itself
+        return DataFile(value, value)
     if not isinstance(value, DataFile):
         message = f"{what}: its file was not read"
         raise InputError(Diagnostic(message, "read the design from its file"))

@@ -466,8 +466,8 @@ def _draw_pose(
 def duration_words(seconds: float) -> str:
     """A time in seconds, minutes or hours.
 
-    >>> duration_words(62.27), duration_words(900.0), duration_words(7200.0)
-    ('62.3 s', '15.0 min', '2.00 h')
+    >>> duration_words(62.27), duration_words(900.0), duration_words(72000.0)
+    ('62.3 s', '15.0 min', '20.0 h')
     """
     unit, factor = _time_unit(seconds)
     return f"{number(factor * seconds, 3)} {unit}"
