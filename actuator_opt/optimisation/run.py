@@ -236,7 +236,7 @@ def _searched(actuator: ActuatorProblem, fault: Fault | None, **settings: Any) -
     found = _confirmed(replace(actuator, problem=problem), **again)
     if first.interrupted:
         return _interrupted(found)
-    if first.feasible and not found.feasible:
+    if first.feasible and not found.feasible and settings["max_seconds"] is None:
         return _confirmed(actuator, **settings)
     return replace(
         found,

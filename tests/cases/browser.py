@@ -78,7 +78,7 @@ def contrasts(page):
 
 
 def controls(page):
-    """Role and name of every control, as a screen reader is told; no name is an empty text."""
+    """Role and name of every control, as a screen reader says them; empty if it has no name."""
     found = re.findall(CONTROLS, page.locator("body").aria_snapshot(), re.MULTILINE)
     return [(role, rest if rest.startswith(' "') else "") for role, rest in found]
 
