@@ -31,7 +31,7 @@ from .structure import FileView, child_at
 Use: TypeAlias = Literal["reciprocating", "static"]
 Direction: TypeAlias = Literal["nearest", "up", "down"]
 
-_SAME = 0.005
+SAME = 0.005
 """Largest relative difference between a ring section and a tabulated one for which the tabulated
 gland applies. For other sections the gland is interpolated."""
 
@@ -346,7 +346,7 @@ def section_tolerance(section: float) -> StandardSize:
     """
     sizes, bands = tables()["section_tolerances"], tables()["section_tolerance_bands"]
     for size, tolerance in sizes["rows"]:
-        if abs(metres(size) - section) <= _SAME * section:
+        if abs(metres(size) - section) <= SAME * section:
             return StandardSize(metres(tolerance), sizes["confidence"], citation(sizes["source"]))
     for size, tolerance in bands["rows"]:
         if section <= metres(size) * (1 + 1e-9):
@@ -408,7 +408,7 @@ def gland(section: float, use: Use = "reciprocating", *, table: str | None = Non
         raise InputError(Diagnostic(message, "use the default table"))
     for rows in (glands(use, table or "as568"), glands(use, table or "metric")):
         nearest = min(rows, key=lambda row: abs(row.section - section))
-        if abs(nearest.section - section) <= _SAME * nearest.section:
+        if abs(nearest.section - section) <= SAME * nearest.section:
             return nearest
     if not rows[0].section < section < rows[-1].section:
         low, high = rows[0].section * 1e3, rows[-1].section * 1e3

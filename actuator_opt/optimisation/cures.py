@@ -447,7 +447,7 @@ def _candidate_choices(
         fails = any(place.startswith(f"{name} seal") for place in places)
         if fails or matters(f"{section}.", f"materials.{seal.compound}."):
             for word, count in BACK_UPS.items():
-                if count > seal.back_ups and (beside := _rings(seal, section, count)) is not None:
+                if count > seal.back_ups and (beside := back_up_entries(seal, section, count)) is not None:
                     yield f"{section}.back_up", word, beside
             if seal.seal_type.o_ring_gland:
                 for compound in SUBSTITUTES["seal"]:
@@ -479,7 +479,7 @@ def _near_sections(section: float) -> list[float]:
     return [*smaller[-1:], *larger[:1]]
 
 
-def _rings(seal: Seal, section: str, count: int) -> dict[str, str] | None:
+def back_up_entries(seal: Seal, section: str, count: int) -> dict[str, str] | None:
     """Entries to change for `count` back-up rings on a seal; None if no standard gland fits."""
     if seal.back_up_material is not None and seal.back_up_thickness is not None:
         return {}

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,8 @@ Numbers = Mapping[str, float | str]
 """Changed numbers by PATH, in SI or as text with a unit, relative to the design as read."""
 CARD_WIDTH = 76
 """Characters of a line of the card that says what helps if nothing fits."""
+SAME = 1e-6
+"""Relative difference of two objectives up to which they count as equal (that of the solver)."""
 STATED = ("requirements.", "load_cases[")
 """Beginnings of the PATHs of what is asked; all other numbers are fixed."""
 
@@ -68,14 +71,15 @@ class Studio:
         self._file = Path(path).resolve()
         self._digest = digest(self._file)
         self._out, self._seed = out, seed
-        self._words = [path, *_options("--set", (f"{name}={value}" for name, value in set))]
-        self._words += _options("--plugin", map(str, plugins))
+        self._words = [path, *_changing(set), *_options("--plugin", map(str, plugins))]
         self.present: dict[str, float] = {}
         """Changed numbers of the design that the page showed last."""
         self._last: tuple[dict[str, float], Optimisation] | None = None
         self._moved: tuple[dict[str, float], Session] | None = None
         self._base: dict[str, float] = {}
         self._session: Session | None = None
+        self.searched = True
+        """Whether the optimum was searched in the whole range, not only near another design."""
         self._opening = self._opened()
 
     def _opened(self) -> Optimisation:
@@ -88,6 +92,55 @@ class Studio:
                 raise
             return nearest
         return self._session.optimum
+
+    def variant(self, entries: Mapping[str, str | None], stop: Stop) -> Studio:
+        """A studio of the same file with other words, such as a material or a joint.
+
+        Parameters
+        ----------
+        entries : words by PATH, and None for keys to remove
+        stop : true once nobody wants the answer
+
+        Raises
+        ------
+        InputError : the words do not suit the design
+        Dropped : `stop` became true
+        """
+        other = copy(self)
+        other.actuator = self.actuator.changed(entries)
+        other._words = [*self._words, *_changing(entries.items())]
+        other.present, other._base, other._last, other._moved = {}, {}, None, None
+        same = other.actuator.design.variables.keys() == self.actuator.design.variables.keys()
+        other.searched = self._session is None or not same
+        if self._session is None:
+            other._opening = other._search({}, stop)
+            if other._opening.optimum:
+                other._session = session(other.actuator, seed=self._seed)
+        else:
+            kept = {path: value for path, value in self._relative({}).items() if path in entries}
+            found = self._session.variant({**kept, **entries}, stop=stop)
+            other._opening, other._session = found
+        if stop():
+            raise Dropped
+        return other
+
+    def search(self, stop: Stop) -> None:
+        """Search the whole range for a better optimum than that found near another design."""
+        if self.searched or self._session is None:
+            return
+        found = self._session.variant({}, thorough=True, stop=stop)
+        if stop():
+            raise Dropped
+        sign = -1.0 if _maximises(self._opening) else 1.0
+        gain = sign * (self._opening.objective_value - found.optimum.objective_value)
+        if found.session is not None and gain > SAME * abs(self._opening.objective_value):
+            self._opening, self._session = found
+            self._last = self._moved = None
+        self.searched = True
+
+    def same_file(self, other: Studio) -> None:
+        """Take over what another studio of the same file knows of its content."""
+        self._digest = other._digest
 
     # ---- what the page shows ----
 
@@ -394,6 +447,15 @@ def _never() -> bool:
     return False
 
 
+def _changing(changes: Iterable[Change]) -> list[str]:
+    """Options of the command line that change a design; the value None removes a key."""
+    return [
+        word
+        for path, value in changes
+        for word in (("--unset", path) if value is None else ("--set", f"{path}={value}"))
+    ]
+
+
 def _options(name: str, values: Any) -> list[str]:
     return [word for value in values for word in (name, value)]
 
@@ -413,12 +475,16 @@ def _goal(optimum: Optimisation) -> dict[str, Any]:
     """Name, unit and direction of the objective."""
     name = optimum.objective_metric
     metric = optimum.best_evaluation.metrics.get(name)
-    objective = optimum.design.objective
     plain = {"unit": "", "typed": "", "offset": 0.0, "factor": 1.0}
     scale = plain if metric is None else _scale(metric.quantity)
     label = "objective" if metric is None else term_of(name)
-    maximise = objective is not None and objective.aim == "max"
+    maximise = _maximises(optimum)
     return {"label": label, "mass": name == "mass", "maximise": maximise, **scale}
+
+
+def _maximises(optimum: Optimisation) -> bool:
+    objective = optimum.design.objective
+    return objective is not None and objective.aim == "max"
 
 
 def _plain(change: str | None) -> str | None:
