@@ -49,6 +49,7 @@ def studio(
     reports to --out. Ctrl-C ends the studio and prints the command that finds the same design.
     """
     from ..base.files import require_folder
+    from ..studio.choices import Choices
     from ..studio.model import Studio
     from ..studio.server import Server
 
@@ -58,7 +59,7 @@ def studio(
     require_folder(out)
     job = Job(design, sets=sets, unset=unset, plugins=plugin, as_json=as_json, quiet=quiet)
     with Server(port or 0) as server:
-        opened = Studio(design, set=job.set, plugins=plugin or (), out=out, seed=seed)
+        opened = Choices(Studio(design, set=job.set, plugins=plugin or (), out=out, seed=seed))
         if as_json:
             streams.out_json({"address": server.address})
         else:

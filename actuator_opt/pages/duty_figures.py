@@ -111,8 +111,8 @@ def balance_of(cycle: CycleStudy) -> list[tuple[str, float]]:
 
 def figure(lengths: Mapping[str, float], study: DutyStudy, cycle: CycleStudy) -> Chart:
     """The cycle over time; beside it force over speed, energies, and the linkage."""
-    strips = _strips(study, cycle)
-    beside: list[Panel | Ink] = [*_planes(study, cycle)]
+    panels = strips(study, cycle)
+    beside: list[Panel | Ink] = [*planes(study, cycle)]
     if (picture := _energy_picture(cycle)) is not None:
         beside.append(picture)
     if study.linkage is not None and cycle.linked:
@@ -121,10 +121,10 @@ def figure(lengths: Mapping[str, float], study: DutyStudy, cycle: CycleStudy) ->
     label = f"Cycle {clean(cycle.name)}: supply pressure needed, % of the supply"
     return Chart(
         f"Duty cycle {clean(cycle.name)}",
-        [strips, beside],
+        [panels, beside],
         _note(study, cycle),
         instead=_profile(label, cycle, percent),
-        height=FOOT + STRIP * len(strips),
+        height=FOOT + STRIP * len(panels),
         widths=WIDTHS,
     )
 
@@ -173,7 +173,7 @@ class _Strip(NamedTuple):
     """Words and sample of a mark on the first curve."""
 
 
-def _strips(study: DutyStudy, cycle: CycleStudy) -> list[Panel]:
+def strips(study: DutyStudy, cycle: CycleStudy) -> list[Panel]:
     """The traces over time; the last panel has the time axis."""
     made = [*_motion(study, cycle), *_hydraulics(study, cycle)]
     label, factor = time_words(float(np.ptp(cycle.time)))
@@ -276,7 +276,7 @@ def _hydraulics(study: DutyStudy, cycle: CycleStudy) -> Iterator[_Strip]:
     yield _Strip("Flow from the supply", FLOW, {"": traces["flow"]}, [mean], True, peak)
 
 
-def _planes(study: DutyStudy, cycle: CycleStudy) -> list[Panel]:
+def planes(study: DutyStudy, cycle: CycleStudy) -> list[Panel]:
     """The cycle in the plane of force and speed: with all limits and, if it is small, enlarged."""
     scale, across = FORCE.to_display(1.0), SPEED.to_display(1.0)
     speed, force = across * cycle.traces["speed"], scale * cycle.traces["force"]

@@ -25,6 +25,7 @@ function paint() {
   if (current) { paintMasses(design, pinned); paintDimensions(design, pinned); paintHolds(truthNow); }
   paintPrices();
   paintButtons();
+  CHOICES.tell();
 }
 function paintTable(id, rows) {
   const most = Math.max(...rows.flatMap((row) => [row.share, row.before ?? 0]), 1e-12);
@@ -53,7 +54,7 @@ function paintMasses(design, pinned) {
     ...Object.entries(compared(scale, design.mass, pinned ? pinned.mass : undefined)).map(([key, text]) => node("td", { className: key === "now" ? "number" : "number a", textContent: text }))));
 }
 function paintDimensions(design, pinned) {
-  paintTable("dimensions", S.design.dimensions.map((row) => {
+  paintTable("dimensions", S.design.dimensions.filter((row) => row.path in design.dimensions).map((row) => {
     const now = design.dimensions[row.path], was = pinned ? pinned.dimensions[row.path] : undefined;
     const share = (si) => Math.min(Math.max((si - row.low) / (row.high - row.low), 0), 1);
     return { name: row.label, share: share(now), before: was === undefined ? undefined : share(was), ...compared(row, now, was) };
@@ -244,6 +245,17 @@ function addFixed(ranked) {
   for (const row of dearest) add("fixed", row);
   if (!dearest.length) byId("fixed").append(node("p", { className: "hint", textContent: "No fixed number changes the optimum." }));
 }
+// Names and numbers of the design with the present words.
+function describe(design) {
+  const up = byId("up").value;
+  S.design = design;
+  S.goal = design.goal;
+  byId("up").replaceChildren(node("option", { value: "", textContent: S.goal.label }), ...design.dimensions.map((row) => node("option", { value: row.path, textContent: row.label })));
+  byId("up").value = design.dimensions.some((row) => row.path === up) ? up : "";
+  CHOICES.offer(design);
+  CHOICES.show();
+  offerCycles(design.cycles ?? []);
+}
 async function start() {
   const hatching = shape("svg", { class: "hidden", "aria-hidden": "true", width: 0, height: 0 });
   const pattern = shape("pattern", { id: "hatch", width: 5, height: 5, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" });
@@ -253,14 +265,13 @@ async function start() {
   const data = await ask("solve", { changes: {}, describe: true });
   if (data.dropped) { setTimeout(start, CALM); return; }
   S.design = data.design;
-  S.goal = S.design.goal;
   document.title = `${S.design.name}: studio`;
   byId("name").textContent = S.design.name;
   byId("beside").textContent = S.design.file;
   const limit = (row) => row.path.startsWith("requirements.");
   for (const row of S.design.numbers) if (row.asked && limit(row)) add("asked", row);
   for (const row of S.design.numbers) if (row.asked && !limit(row)) add("asked", row);
-  byId("up").append(node("option", { value: "", textContent: S.goal.label }), ...S.design.dimensions.map((row) => node("option", { value: row.path, textContent: row.label })));
+  S.describedFor = wordsOf({});
   truth(data, {});
 }
 start().catch((fault) => { if (!(fault instanceof Unfit)) throw fault; });

@@ -23,7 +23,7 @@ from ..evaluation.result import Check, Requirement
 from ..metrics import term_of
 from ..optimisation.result import Optimisation
 from ..rendering import text
-from . import section
+from . import cycle, section
 from .saving import Saved, digest, save_text
 from .worker import Dropped, Stop
 
@@ -159,6 +159,7 @@ class Studio:
             "file": self._file.name,
             "suggested": f"{stem}_studio.yaml",
             "goal": _goal(optimum),
+            "cycles": [x.name for x in design.duty.cycles] if design.duty is not None else [],
             "numbers": [row for row in rows if row is not None],
             "dimensions": [
                 {"path": row.path, "label": words_of(row.path), "low": row.lower, "high": row.upper}
@@ -376,6 +377,15 @@ class Studio:
             "objectives": curve.objectives,
             "dimensions": [dict(row) for row in curve.variables],
         }
+
+    def cycle(self, changes: Numbers, name: str, stop: Stop) -> dict[str, Any]:
+        """A duty cycle at the optimum, as `cycle.drawn`.
+
+        Raises
+        ------
+        UsageError : the design states no such cycle
+        """
+        return cycle.drawn(self._optimum(self._si(changes), stop).best_evaluation, name)
 
     # ---- files ----
 

@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 
 FOLDER = Path(__file__).parent
-SCRIPTS = ("words", "link", "section", "chart", "slider", "state", "main")
+SCRIPTS = ("words", "link", "section", "chart", "slider", "state", "menus", "cycle", "main")
 """The script's parts, in order; each uses only the parts before it."""
 
 

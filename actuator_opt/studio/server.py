@@ -1,4 +1,4 @@
-"""The server of the studio: one page on this machine, and six routes for it.
+"""The server of the studio: one page on this machine, and seven routes for it.
 
 Any page that the user visits can send requests to 127.0.0.1. Each request is therefore checked in
 this order before its body is read: host, origin, content type, length, token, route.
@@ -18,7 +18,8 @@ from typing import Any, ClassVar
 
 from ..base.errors import ActuatorError, Diagnostic, Unsolvable, UsageError
 from ..base.files import read_json
-from .model import Numbers, Studio
+from .choices import Choices
+from .model import Numbers
 from .page import POLICY, page
 from .saving import require_name
 from .worker import Dropped, Kind, Stop, Worker
@@ -70,7 +71,7 @@ class Server(ThreadingHTTPServer):
 
     daemon_threads = True
     block_on_close = False
-    studio: Studio
+    studio: Choices
     worker: Worker
     fault: Fault
 
@@ -92,7 +93,7 @@ class Server(ThreadingHTTPServer):
         """Address of the page, with the token in its fragment, which browsers send nowhere."""
         return f"http://{LOOPBACK}:{self.server_port}/#{self.token}"
 
-    def serve(self, studio: Studio, fault: Fault) -> None:
+    def serve(self, studio: Choices, fault: Fault) -> None:
         """Answer requests until Ctrl-C; `fault` reports an unexpected exception."""
         self.studio, self.fault, self.worker = studio, fault, Worker()
         try:
@@ -248,7 +249,7 @@ class _Wish:
 
     KEYS: ClassVar = frozenset(
         {"tab", "changes", "describe", "explain", "paths", "draw", "path", "values", "name"}
-        | {"replacing"}
+        | {"replacing", "search"}
     )
 
     def __init__(self, body: Body) -> None:
@@ -302,13 +303,14 @@ class _Wish:
 
 
 def _solve(server: Server, wish: _Wish) -> Any:
-    changes, explain, describe = wish.changes, wish.flag("explain"), wish.flag("describe")
-    kind: Kind = "prices" if explain else "solve"
+    changes, describe = wish.changes, wish.flag("describe")
+    explain, search = wish.flag("explain"), wish.flag("search")
+    kind: Kind = "prices" if explain or search else "solve"
     studio = server.studio
 
     def work(stop: Stop) -> Any:
-        more = {"design": studio.describe()} if describe else {}
-        return studio.solve(changes, stop, explain=explain) | more
+        more = {"design": studio.describe(changes, stop)} if describe else {}
+        return studio.solve(changes, stop, explain=explain, search=search) | more
 
     return server.worker.do(work, tab=wish.tab, kind=kind)
 
@@ -329,6 +331,13 @@ def _curve(server: Server, wish: _Wish) -> Any:
     )
 
 
+def _cycle(server: Server, wish: _Wish) -> Any:
+    changes, name = wish.changes, wish.word("name")
+    return server.worker.do(
+        lambda stop: server.studio.cycle(changes, name, stop), tab=wish.tab, kind="cycle"
+    )
+
+
 def _save(server: Server, wish: _Wish) -> Any:
     changes, name = wish.changes, require_name(wish.word("name"))
     replacing = wish.word("replacing") or None
@@ -345,6 +354,7 @@ ROUTES: Mapping[str, Callable[[Server, _Wish], Any]] = {
     "/api/solve": _solve,
     "/api/prices": _prices,
     "/api/curve": _curve,
+    "/api/cycle": _cycle,
     "/api/save": _save,
     "/api/report": _report,
 }

@@ -2,16 +2,19 @@
 // Changes are kept in display units by PATH, relative to the file.
 const PATIENCE = 400, CALM = 250, MOST_UNDO = 200, CHUNK = 5, MERGE = 800;
 const S = {
-  design: null, goal: null, sliders: new Map(), changes: {}, committed: {}, past: [], future: [],
+  design: null, goal: null, sliders: new Map(), menus: new Map(), describedFor: "", changes: {}, committed: {}, past: [], future: [],
   shown: null, shownFor: "", good: null, A: null, priced: null, curves: new Map(), focused: "", touched: { path: "", key: false, time: 0 },
 };
 
 const keyOf = (changes, without) => JSON.stringify(Object.keys(changes).filter((path) => path !== without).sort().map((path) => [path, changes[path]]));
-const wishes = (changes) => Object.fromEntries(Object.entries(changes).map(([path, value]) => [path, S.sliders.get(path).wish(value)]));
+const control = (path) => S.sliders.get(path) ?? S.menus.get(path);
+const wishes = (changes) => Object.fromEntries(Object.entries(changes).map(([path, value]) => [path, control(path).wish(value)]));
+// The words among some changes: with other words a design has other numbers, dimensions and menus.
+const wordsOf = (changes) => keyOf(Object.fromEntries(Object.entries(changes).filter(([, value]) => typeof value === "string")));
 
 function change(path, value) {
   const next = { ...S.changes };
-  if (value === S.sliders.get(path).file) delete next[path];
+  if (value === control(path).file) delete next[path];
   else next[path] = value;
   S.changes = next;
 }
@@ -36,14 +39,13 @@ async function request() {
   LINE.started = performance.now();
   byId("main").setAttribute("aria-busy", "true");
   let data = null, why = "";
-  try { data = await ask("solve", { changes: wishes(changes) }); } catch (fault) { why = fault.message; }
+  try { data = await ask("solve", { changes: wishes(changes), ...(wordsOf(changes) === S.describedFor ? {} : { describe: true }) }); } catch (fault) { why = fault.message; }
   LINE.active--;
   const newest = serial === LINE.latest;
   if (LINE.waiting && !LINE.active) { LINE.waiting = false; clearTimeout(LINE.timer); LINE.timer = 0; request(); }
   if (!newest) return;
   if (!data) {
-    const slider = S.sliders.get(S.touched.path);
-    if (slider) slider.refuse(why);
+    control(S.touched.path)?.refuse(why);
     return;
   }
   if (data.dropped) { setTimeout(solve, CALM); return; }
@@ -53,7 +55,8 @@ function truth(data, changes) {
   S.shown = data;
   S.shownFor = keyOf(changes);
   if (data.feasible) S.good = data;
-  S.sliders.get(S.touched.path)?.refuse("");
+  control(S.touched.path)?.refuse("");
+  if (data.design) { S.describedFor = wordsOf(changes); describe(data.design); }
   paint();
   if (S.shownFor === keyOf(S.changes)) {
     byId("main").setAttribute("aria-busy", "false");
@@ -69,6 +72,7 @@ function predicted() {
   const different = paths.filter((path) => S.changes[path] !== S.priced.changes[path]);
   if (different.length !== 1) return null;
   const [path] = different, slider = S.sliders.get(path), price = S.priced.prices.get(path);
+  if (!slider) return null;  // a word has no price
   const si = (slider.value - slider.row.offset) / slider.row.factor;
   if (price && (price.low === null || si >= price.low) && (price.high === null || si <= price.high)) {
     const step = si - price.value, slope = step > 0 ? price.up : price.down, { section, objective } = S.priced.shown;
@@ -85,6 +89,7 @@ function predicted() {
 
 // ---- at rest: prices, the card if nothing fits, curves nearest first ----
 const REST = { timer: 0, ranked: new Map(), done: false };
+const RESTING = [];  // what else is asked at rest: functions of changes and stale, false if it has to be asked again
 
 function settle() {
   clearTimeout(REST.timer);
@@ -103,8 +108,16 @@ async function rest() {
     }
     return;
   }
+  if (S.shown.searched === false) {
+    const data = await ask("solve", { changes, search: true });
+    if (stale()) return;
+    if (data.dropped) settle();
+    else truth(data, S.changes);
+    return;
+  }
+  for (const act of RESTING) if (!(await act(changes, stale))) return;
   const standing = { key, changes: S.changes, shown: S.shown };
-  const answer = await ask("prices", { changes, paths: [...S.sliders.keys()], draw: true });
+  const answer = await ask("prices", { changes, paths: [...S.sliders].filter(([, slider]) => !slider.box.hidden).map(([path]) => path), draw: true });
   if (stale()) return;
   if (answer.dropped) { settle(); return; }
   if (answer.infeasible) return;
@@ -184,6 +197,7 @@ function travel(from, to) {
 }
 function showChanges() {
   for (const [path, slider] of S.sliders) { slider.refuse(""); slider.show(S.changes[path] ?? slider.file); }
+  CHOICES.show();
   paint();
   solve();
 }

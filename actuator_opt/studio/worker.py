@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeVar, cast
 
-Kind = Literal["solve", "prices", "curve", "kept"]
+Kind = Literal["solve", "prices", "curve", "cycle", "kept"]
 """Kinds of jobs. A "kept" job, such as saving, is neither stopped nor dropped."""
 Stop = Callable[[], bool]
 _T = TypeVar("_T")
@@ -78,7 +78,7 @@ class Worker:
             running = self._running
             if running is not None and (
                 running.replaced_by(job)
-                or (kind == "solve" and running.kind in ("prices", "curve"))
+                or (kind == "solve" and running.kind in ("prices", "curve", "cycle"))
             ):
                 running.stopped = True
             self._waiting.append(job)
