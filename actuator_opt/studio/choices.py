@@ -20,6 +20,7 @@ from ..design import Design, choices as keys, get
 from ..design.build import build, copy_tree, to_tree
 from ..design.data_file_reader import attach, folder_of
 from ..design.kinds import MATERIAL_EXAMPLES, MaterialName, TableRow, ValueFault
+from ..design.material import ROLES
 from ..design.materials import Library, load_library
 from ..design.paths import numbers as numbers_of, put, remove, resolve, spell, words_of
 from ..design.seals import BACK_UPS, SealElement
@@ -384,8 +385,8 @@ class Choices:
         """The studio with these words; kinds of joint and seal come first."""
         actuator, entries = self._file.actuator, Entries()
         for path, word in sorted(words.items(), key=lambda entry: not entry[0].endswith(".type")):
-            if get(actuator.design, path) is None:
-                continue  # removed by another word
+            if get(actuator.design, path) is None and _is_known(actuator.design, path, word):
+                continue  # a key of another joint, for instance
             more = entries_of(actuator, path, word)
             actuator = actuator.changed(more) if more else actuator
             entries |= more
@@ -408,6 +409,17 @@ def _is_word(design: Design, path: str) -> bool:
     except ValueFault:
         return False
     return target.quantity is None
+
+
+def _is_known(design: Design, path: str, word: str) -> bool:
+    """Whether a key, stated or not, describes a part and takes a word."""
+    entry = resolve(path, design).entry
+    if entry is None:
+        return False
+    if isinstance(entry.kind, MaterialName):
+        library = load_library()
+        return word in library and library.kind(word) in ROLES[entry.kind.role]
+    return any(entry.kind is kind for kind in _ROWS) and word in entry.choices
 
 
 def _never() -> bool:

@@ -2,7 +2,9 @@
 const FRAME = { left: 50, right: 12, top: 20, bottom: 30 }, SHORTEST = 2, LONGEST = 10;
 const C = { data: null, key: "", sample: 0, markers: [], playing: 0 };
 
-function drawPanel(svg, panel, time) {
+// Draw a panel; return the function that puts its marker on a sample. `least` marks a time.
+function drawPanel(svg, panel, least) {
+  const time = least !== undefined;
   const width = svg.clientWidth || 400, height = svg.clientHeight || 150, [x0, x1] = panel.x, [y0, y1] = panel.y;
   const px = (x) => FRAME.left + (x - x0) / (x1 - x0 || 1) * (width - FRAME.left - FRAME.right);
   const py = (y) => height - FRAME.bottom - (y - y0) / (y1 - y0 || 1) * (height - FRAME.top - FRAME.bottom);
@@ -23,6 +25,7 @@ function drawPanel(svg, panel, time) {
     drawn.push(shape("path", { class: limit ? "limit" : "level", d: `M${FRAME.left} ${py(value)}H${width - FRAME.right}` }));
     if (words) drawn.push(shape("text", { x: width - FRAME.right - 2, y: py(value) - 3, "text-anchor": "end" }, words));
   }
+  if (time) drawn.push(shape("path", { class: "least", d: `M${px(panel.curves[0].xs[least])} ${FRAME.top}V${height - FRAME.bottom}` }));
   let named = 0;
   for (const { xs, ys, along, words } of panel.curves) {
     let d = "", open = false;
@@ -36,9 +39,13 @@ function drawPanel(svg, panel, time) {
     if (words && along && panel.curves.length > 1 && time) drawn.push(shape("text", { x: width - FRAME.right - 90 * named, y: 13, "text-anchor": "end", class: `name-${rank}` }, words));
     if (along) named += 1;
   }
+  const taken = [];
   for (const { x, y, words } of panel.points) {
-    const left = px(x) > width / 2;
-    drawn.push(shape("circle", { class: "spot", cx: px(x), cy: py(inside(y)), r: 4 }), shape("text", { x: px(x) + (left ? -7 : 7), y: py(inside(y)) + (py(inside(y)) < FRAME.top + 14 ? 14 : -6), "text-anchor": left ? "end" : "start" }, words));
+    const left = px(x) > width / 2, cx = px(x), cy = py(inside(y));
+    let at = cy + (cy < FRAME.top + 14 ? 14 : -6);
+    while (taken.some(([a, b]) => Math.abs(a - cx) < 110 && Math.abs(b - at) < 13)) at += 14;
+    taken.push([cx, at]);
+    drawn.push(shape("circle", { class: "spot", cx, cy, r: 4 }), shape("text", { x: cx + (left ? -7 : 7), y: at, "text-anchor": left ? "end" : "start" }, words));
   }
   const own = panel.curves.find((curve) => curve.along), dot = shape("circle", { class: "marker", r: 5.5 }), line = shape("path", { class: "marker-line" });
   svg.replaceChildren(...drawn, ...(time ? [line] : []), dot);
@@ -53,11 +60,11 @@ function paintCycle() {
   const { data } = C;
   if (!data || !byId("duty").open) return;
   const at = (id) => data.strips[Math.min(byId(id).selectedIndex, data.strips.length - 1)];
-  C.markers = [drawPanel(byId("trace-1"), at("shown-1"), true), drawPanel(byId("trace-2"), at("shown-2"), true)];
-  data.planes.slice(0, 2).forEach((panel, k) => C.markers.push(drawPanel(byId(`plane-${k + 1}`), panel, false)));
+  C.markers = ["1", "2"].map((k) => drawPanel(byId(`trace-${k}`), at(`shown-${k}`), data.reserve.sample));
+  data.planes.slice(0, 2).forEach((panel, k) => C.markers.push(drawPanel(byId(`plane-${k + 1}`), panel)));
   byId("plane-2").toggleAttribute("hidden", data.planes.length < 2);
   byId("plane-note").textContent = data.limit;
-  byId("least").textContent = `Go to ${data.reserve.text}`;
+  byId("least-text").textContent = `Thin red line: ${data.reserve.text}.`;
   paintEnergy(data);
   place(C.sample);
 }

@@ -39,9 +39,9 @@ choice). Samples with an extreme value are kept."""
 DIGITS = 6
 """Significant digits of a coordinate."""
 _TOLD = (
-    ("joint", "angle", ANGLE), ("torque", "torque", TORQUE), ("force", "force", FORCE),
-    ("speed", "speed", SPEED), ("reserve", "reserve", FORCE), ("valve open", "opening", OPENING),
-    ("pressure needed, of the supply", "share", OPENING),
+    ("joint at {}", "angle", ANGLE), ("torque {}", "torque", TORQUE), ("force {}", "force", FORCE),
+    ("speed {}", "speed", SPEED), ("force reserve {}", "reserve", FORCE),
+    ("valve {} open", "opening", OPENING), ("{} of the supply pressure needed", "share", OPENING),
 )  # fmt: skip
 """What the text at a sample states: words, trace and quantity."""
 
@@ -66,14 +66,14 @@ def drawn(evaluation: Evaluation, name: str) -> dict[str, Any]:
     cycle = cycles[name]
     rows = _kept(cycle)
     reserve = cycle.worst["reserve"]
-    _, factor = time_words(float(np.ptp(cycle.time)))
+    label, factor = time_words(float(np.ptp(cycle.time)))
     return {
         "name": name,
         "time": _rounded(factor * cycle.time[rows]),
         "seconds": float(np.ptp(cycle.time)),
         "told": [_told(cycle, int(row)) for row in rows],
-        "strips": [_panel(panel, rows, over_time=True) for panel in strips(study, cycle)],
-        "planes": [_panel(panel, rows, over_time=False) for panel in planes(study, cycle)],
+        "strips": [_panel(x, rows, label) for x in strips(study, cycle)],
+        "planes": [_panel(x, rows) for x in planes(study, cycle)],
         "reserve": {
             "sample": int(np.searchsorted(rows, reserve.sample)),
             "text": f"least force reserve {value_of(FORCE, reserve.value)} "
@@ -93,7 +93,10 @@ def _limit(study: DutyStudy) -> str:
     if study.opening_limit is None:
         return "Shaded: loads that the supply moves; the design states no valve."
     share = value_of(OPENING, study.opening_limit)
-    return f"Shaded: loads that the supply moves with the valve at most {share} open."
+    return (
+        f"Shaded: loads that the supply moves with the valve at most {share} open. "
+        "Dashed: at this opening, and fully open."
+    )
 
 
 def _kept(cycle: CycleStudy) -> Rows:
@@ -110,14 +113,14 @@ def _told(cycle: CycleStudy, row: int) -> str:
     for name, key, quantity in _TOLD:
         values = trace_of(cycle, key)
         if values is not None and math.isfinite(values[row]):
-            words.append(f"{name} {value_of(quantity, float(values[row]))}")
+            words.append(name.format(value_of(quantity, float(values[row]))))
     return ", ".join(words)
 
 
-def _panel(panel: Panel, rows: Rows, *, over_time: bool) -> dict[str, Any]:
+def _panel(panel: Panel, rows: Rows, time: str = "") -> dict[str, Any]:
     """A panel of the report; of a curve along the cycle, only some samples.
 
-    A panel that is not `over_time` shows force over speed; there the other curves are limits.
+    `time` is the label of the time axis; empty for force over speed, where other curves are limits.
     """
 
     def some(values: Iterable[float], *, along: bool) -> list[float | None]:
@@ -126,7 +129,7 @@ def _panel(panel: Panel, rows: Rows, *, over_time: bool) -> dict[str, Any]:
 
     curves = []
     for curve in panel.curves:
-        along = over_time or curve.style == CYCLE
+        along = bool(time) or curve.style == CYCLE
         curves.append(
             {
                 "words": curve.words,
@@ -143,7 +146,7 @@ def _panel(panel: Panel, rows: Rows, *, over_time: bool) -> dict[str, Any]:
     across = known(float(x) for curve in panel.curves for x in curve.xs)
     return {
         "title": panel.title,
-        "label": panel.x.label,
+        "label": time or panel.x.label,
         "x": list(panel.x.range or (min(across), max(across))),
         "y": list(panel.y.range or even_range(values, zero=panel.y.zero)),
         "curves": curves,

@@ -1,4 +1,6 @@
 // Words of the design as menus: joints, seals, materials, sizes. A choice is solved like any change.
+const WIDE = 860;  // from here on the page has two columns, as in its style
+
 class Menu {
   constructor(path, acts) {
     this.path = path;
@@ -87,6 +89,7 @@ const CHOICES = {
     byId("menus").replaceChildren(...["Joint", "Materials", "Seals", "Build"].filter((group) => groups.has(group)).map((group) =>
       node("fieldset", {}, node("legend", { textContent: group }), ...groups.get(group).map((menu) => menu.box))));
     if (byId("menus").contains(focused)) focused.focus();
+    if (byId("choices").hidden) byId("choices").open = innerWidth > WIDE;
     byId("choices").hidden = !groups.size;
     const known = new Set(rows.keys());
     for (const [path, slider] of S.sliders) slider.box.hidden = !known.has(path);

@@ -32,13 +32,17 @@ class Recorder:
             raise self.fails
         return {"fine": True}
 
-    def describe(self):
-        """As `Studio.describe`."""
+    def describe(self, changes, stop):
+        """As `Choices.describe`."""
         return {"name": "x"}
 
-    def solve(self, changes, stop, *, explain=False):
-        """As `Studio.solve`."""
-        return self._note("solve", dict(changes), explain)
+    def solve(self, changes, stop, *, explain=False, search=False):
+        """As `Choices.solve`."""
+        return self._note("solve", dict(changes), explain, search)
+
+    def cycle(self, changes, name, stop):
+        """As `Choices.cycle`."""
+        return self._note("cycle", dict(changes), name)
 
     def prices(self, changes, paths, stop, *, draw=False):
         """As `Studio.prices`."""
@@ -111,7 +115,7 @@ def test_our_own_page_is_answered(served):
     server, studio = served
     wish = json.dumps({"changes": {"cylinder.stroke": "112 mm"}, "tab": "a"}).encode()
     assert sent(server, body=wish)[::2] == (200, {"fine": True})
-    assert studio.calls == [("solve", {"cylinder.stroke": "112 mm"}, False)]
+    assert studio.calls == [("solve", {"cylinder.stroke": "112 mm"}, False, False)]
     local = f"localhost:{server.server_port}"
     assert sent(server, Host=local, Origin=f"http://{local}")[0] == 200
 
@@ -242,10 +246,10 @@ def test_only_the_fixed_routes_exist(served, path):
     assert studio.calls == []
 
 
-def test_there_are_six_routes_and_reading_changes_nothing(served):
+def test_there_are_seven_routes_and_reading_changes_nothing(served):
     """GET gives the page only, not even with the token; other methods give nothing."""
     server, studio = served
-    assert len(module.ROUTES) + 1 == 6
+    assert len(module.ROUTES) + 1 == 7
     for path in module.ROUTES:
         for method in ("GET", "HEAD", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE"):
             status, headers, _ = sent(server, method, path)
@@ -291,6 +295,11 @@ def test_unfit_wishes_are_refused_by_a_sentence(served, body):
      ("/api/prices", {"paths": ["x"] * 65}), ("/api/curve", {"path": "x", "values": []}),
      ("/api/curve", {"path": 1, "values": [1]}), ("/api/curve", {"path": "x", "values": ["1"]}),
      ("/api/curve", {"path": "x", "values": [1] * 65}), ("/api/save", {}),
+     ("/api/cycle", {"name": 1}), ("/api/cycle", {"name": "x" * 201}),
+     ("/api/cycle", {"cycle": "walk"}), ("/api/solve", {"search": 1}),
+     ("/api/solve", {"words": {"rod.material": "ti_6al4v"}}),
+     ("/api/solve", {"changes": {"rod.material": ["ti_6al4v"]}}),
+     ("/api/solve", {"changes": {"rod.material": None}}),
      ("/api/save", {"name": 1}),
      ("/api/save", {"name": "../x.yaml"}), ("/api/save", {"name": "x.yaml", "replacing": 3})],
 )  # fmt: skip
@@ -305,15 +314,17 @@ def test_every_route_takes_what_it_needs(served):
     """The arguments reach the studio as they were sent."""
     server, studio = served
     for path, wish in {
-        "/api/solve": {"describe": True},
+        "/api/solve": {"describe": True, "search": True},
         "/api/prices": {"paths": ["x"], "draw": True},
         "/api/curve": {"path": "x", "values": [1, 2.5]},
+        "/api/cycle": {"name": "walk"},
         "/api/save": {"name": "x.yaml"},
         "/api/report": {},
     }.items():
         assert sent(server, path=path, body=json.dumps(wish).encode())[0] == 200
     assert studio.calls == [
-        ("solve", {}, False), ("prices", {}, ["x"], True), ("curve", {}, "x", [1.0, 2.5]),
+        ("solve", {}, False, True), ("prices", {}, ["x"], True), ("curve", {}, "x", [1.0, 2.5]),
+        ("cycle", {}, "walk"),
         ("save", {}, "x.yaml", None), ("report", {}),
     ]  # fmt: skip
 
@@ -382,7 +393,7 @@ def test_the_page_holds_no_data_and_no_way_to_inject(served):
     status, _, text = sent(server, "GET", "/", drop=["Origin", TOKEN_HEADER])
     assert status == 200
     assert server.token not in text
-    assert len(text.encode()) < 60_000
+    assert len(text.encode()) < 80_000
     injections = "innerHTML outerHTML insertAdjacent document.write eval( Function("
     assert not [word for word in injections.split() if word in text]
     assert not re.search(r"\b(?:src|href)=[\"'](?!data:,)", text)
