@@ -477,6 +477,7 @@ class Session(OneLine):
         values: Sequence[float | str] | Array,
         *,
         stop: Callable[[], bool] | None = None,
+        search: bool = True,
     ) -> OptimumCurve:
         """Compute the optima for several values of one number.
 
@@ -490,6 +491,8 @@ class Session(OneLine):
         values : list or one-dimensional array of values in SI, or texts with a unit
         stop : called between steps; True ends the search, and values not solved by then have no
             design
+        search : whether to search where the steps near other optima reach no design. Without it, a
+            value without a design costs milliseconds, but only a search can tell that there is none
 
         Raises
         ------
@@ -505,7 +508,11 @@ class Session(OneLine):
         path = next(iter(numbers[0]))
         si_values = [number[path] for number in numbers]
         optima = self._warm.solve_together(
-            path, si_values, lambda value: self._built(self._changed({path: value})[0])[1], stop
+            path,
+            si_values,
+            lambda value: self._built(self._changed({path: value})[0])[1],
+            stop,
+            search=search,
         )
         goal = self._warm.actuator.goal
         metrics = self.optimum.evaluation.metrics

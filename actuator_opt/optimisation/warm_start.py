@@ -147,7 +147,7 @@ class WarmStart:
 
     def solve_together(
         self, path: str, values: Sequence[float], rebuilt: Callable[[float], ActuatorProblem],
-        stop: Stop | None = None,
+        stop: Stop | None = None, *, search: bool = True,
     ) -> list[Point | None]:  # fmt: skip
         """Find the optimum for each value of one number, in parallel.
 
@@ -160,6 +160,7 @@ class WarmStart:
         path, values : PATH of the number, and its values
         rebuilt : function that builds the problem for a value of the number
         stop : called between steps; True ends the search, and the remaining values have no optimum
+        search : whether a search follows for values that no steps reach
         """
         present = self.actuator.subject.numbers.get(path)
         optima: list[Point | None] = [None] * len(values)
@@ -179,10 +180,11 @@ class WarmStart:
             for k in outwards:
                 if stop is not None and stop():
                     return optima
-                solution = self.solve(rebuilt(values[k]).problem, stop)
-                if solution.interrupted:
+                solved = self.solve if search else self.solve_near
+                solution = solved(rebuilt(values[k]).problem, stop)
+                if solution is not None and solution.interrupted:
                     return optima
-                if not solution.feasible:
+                if solution is None or not solution.feasible:
                     break
                 optima[k] = ladder.point_of(self.evaluator, solution)
         return optima

@@ -247,8 +247,8 @@ class _Wish:
     """The body of a request; every access checks type and size, and unknown keys are refused."""
 
     KEYS: ClassVar = frozenset(
-        {"tab", "changes", "describe", "explain", "paths", "draw", "path", "values", "name"}
-        | {"replacing"}
+        {"tab", "changes", "describe", "whole", "explain", "paths", "draw", "path"}
+        | {"values", "search", "name", "replacing"}
     )
 
     def __init__(self, body: Body) -> None:
@@ -303,12 +303,15 @@ class _Wish:
 
 def _solve(server: Server, wish: _Wish) -> Any:
     changes, explain, describe = wish.changes, wish.flag("explain"), wish.flag("describe")
-    kind: Kind = "prices" if explain else "solve"
+    whole = wish.flag("whole") or explain
+    kind: Kind = "prices" if whole else "solve"
     studio = server.studio
 
     def work(stop: Stop) -> Any:
         more = {"design": studio.describe()} if describe else {}
-        return studio.solve(changes, stop, explain=explain) | more
+        if whole:
+            return studio.solve(changes, stop, explain=explain) | more
+        return studio.first(changes, stop) | more
 
     return server.worker.do(work, tab=wish.tab, kind=kind)
 
@@ -324,8 +327,11 @@ def _prices(server: Server, wish: _Wish) -> Any:
 
 def _curve(server: Server, wish: _Wish) -> Any:
     changes, path, values = wish.changes, wish.word("path"), wish.values
+    search = wish.flag("search")
     return server.worker.do(
-        lambda stop: server.studio.curve(changes, path, values, stop), tab=wish.tab, kind="curve"
+        lambda stop: server.studio.curve(changes, path, values, stop, search=search),
+        tab=wish.tab,
+        kind="curve",
     )
 
 
