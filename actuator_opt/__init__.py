@@ -24,6 +24,7 @@ from .base.lazy import homes, loader
 if TYPE_CHECKING:
     from .api import (
         Actuator as Actuator,
+        BareOptimum as BareOptimum,
         Calibrated as Calibrated,
         Catalogue as Catalogue,
         Compared as Compared,
@@ -147,7 +148,7 @@ _PUBLIC = {
     "sweeps.result": "Swept",
     "uncertainties.result": "Uncertainty",
     "api": """
-        Actuator Calibrated Catalogue Compared Comparison Entry Explanation Installation
+        Actuator BareOptimum Calibrated Catalogue Compared Comparison Entry Explanation Installation
         OptimumCurve Prediction Price Rerun Restored Run Session Trial bending calibrate catalogue
         check compare compare_measured comparison_json cycle_scenario delete_run doctor
         draw_comparison draw_run draw_sweep evaluate evaluate_many exit_code explain explore export

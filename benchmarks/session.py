@@ -112,7 +112,7 @@ def table(
     rows = {
         "with its evaluation": solves,
         "warm solve": [
-            timed(lambda k=k: _steps(session, {first: value * (1 + k / 1000)}))
+            timed(lambda k=k: session.bare_optimum({first: value * (1 + k / 1000)}))
             for k in range(-9, 10, 2)
         ],
         "prediction": [
@@ -136,11 +136,6 @@ def _anew(session: ao.Session) -> ao.Session:
     session._warm._responses.clear()
     session._warm._optimum = None
     return session
-
-
-def _steps(session: ao.Session, changes: dict[str, float]) -> None:
-    """A warm solve without the evaluation of its optimum."""
-    session._warm.solve(session._built(session._changed(changes)[0])[1].problem)
 
 
 def main() -> int:

@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     )
     from .results import exit_code as exit_code, report as report
     from .sessions import (
+        BareOptimum as BareOptimum,
         OptimumCurve as OptimumCurve,
         Prediction as Prediction,
         Price as Price,
@@ -124,7 +125,7 @@ _PUBLIC = {
     "reports": "save",
     "restoring": "Restored draw_run report_run restore",
     "results": "exit_code report",
-    "sessions": "OptimumCurve Prediction Price Session session",
+    "sessions": "BareOptimum OptimumCurve Prediction Price Session session",
     "simulations": """
         Compared Trial compare_measured cycle_scenario fitting read_scenario servo_sensitivities
         simulate verify_dynamics write_comparison write_signals write_simulation

@@ -10,7 +10,7 @@ finite difference is used.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
 from typing import Any
 
@@ -197,6 +197,8 @@ class ActuatorProblem:
     and all positive numbers of the design. None with custom metrics, whose code may do anything."""
     scales: tuple[float, ...] = ()
     """Divisor of each margin while its limit is 0; empty if all are 1."""
+    read: frozenset[str] = frozenset()
+    """PATHs of all numbers that the models read."""
 
     def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
         """The problem with the design's numbers at the PATHs `parameters` as its parameters."""
@@ -440,12 +442,36 @@ def build(
     refusals, lenient = Refusals(metrics & plugin_names), replace(subject, lenient=True)
     required = None if plugin_names else metrics
     actuator = ActuatorProblem(
-        lenient, goal, paths, rows, fixed, problem, required, refusals, goals, scales=_scales(rows)
-    )
+        lenient, goal, paths, rows, fixed, problem, required, refusals, goals,
+        scales=_scales(rows), read=frozenset(numbers.read),
+    )  # fmt: skip
     if not plugin_names:
-        actuator = _recording(actuator, numbers.read)
+        actuator = _recording(actuator)
     holder.append(actuator)
     return holder[0]
+
+
+def renumbered(actuator: ActuatorProblem, subject: PreparedDesign) -> ActuatorProblem | None:
+    """The problem of a design with the same structure but other numbers, without running models.
+
+    The numbers must leave all limits that no variable affects as they are, which only `build`
+    finds out. The result is None if the recording does not serve the new numbers: other words,
+    variables or zeros, a weighted objective, custom metrics, duty cycles or tables of oil films.
+    """
+    own, recorded = actuator.subject, actuator.recorded
+    other = subject.design.variables != own.design.variables or subject.design.duty is not None
+    if recorded is None or recorded.recording is None or other or actuator.goal.single is None:
+        return None
+    holder: list[ActuatorProblem] = []
+    problem = replace(actuator.problem, evaluate=lambda points: holder[0].evaluate(points))
+    subject = replace(subject, windows=True, lenient=True)
+    changed = _recording(replace(actuator, subject=subject, problem=problem, refusals=Refusals()))
+    assert changed.recorded is not None
+    if own.films or changed.recorded.structure != recorded.structure:
+        return None
+    changed.recorded.recording = recorded.recording
+    holder.append(changed)
+    return changed
 
 
 def _rows_of_search(
@@ -473,8 +499,8 @@ def _groups(limits: Sequence[MetricLimit], rows: Sequence[LimitRow]) -> tuple[in
     return tuple(place[id(row.limit_of)] for row in rows)
 
 
-def _recording(actuator: ActuatorProblem, read: Collection[str]) -> ActuatorProblem:
-    """The problem with `recorded`; its models read the numbers at the PATHs `read`."""
+def _recording(actuator: ActuatorProblem) -> ActuatorProblem:
+    """The problem with `recorded`."""
     goals = [(goal.weights, goal.scales, goal.sign) for goal in (actuator.goal, *actuator.goals)]
     recorded = recorded_models(
         lambda subject, points, varied: replace(actuator, subject=subject).values_by_models(
@@ -482,7 +508,7 @@ def _recording(actuator: ActuatorProblem, read: Collection[str]) -> ActuatorProb
         ),
         subject=actuator.subject,
         paths=actuator.paths,
-        read=read,
+        read=actuator.read,
         limits=actuator.rows,
         goals=[
             sorted(actuator.metrics or ()),

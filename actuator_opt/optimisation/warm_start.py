@@ -89,7 +89,7 @@ class WarmStart:
         self._responses: dict[str, Responses] = {}
 
     def solve(self, problem: BoxProblem, stop: Stop | None = None) -> Solution:
-        """Find the optimum of a changed problem with the same variables.
+        """Find the optimum of a changed problem with the same variables: steps, then a search.
 
         Parameters
         ----------
@@ -97,18 +97,35 @@ class WarmStart:
         stop : called between steps; once True, the unchanged optimum is returned with the outcome
             "interrupted"
         """
+        near, feasible = self._near(problem, stop)
+        return self._searched(problem, feasible, stop) if near is None else near
+
+    def solve_near(self, problem: BoxProblem, stop: Stop | None = None) -> Solution | None:
+        """As `solve`, but without a search: None if the steps reach no optimum."""
+        return self._near(problem, stop)[0]
+
+    def _near(
+        self, problem: BoxProblem, stop: Stop | None
+    ) -> tuple[Solution | None, Vector | None]:
+        """The optimum by steps from the known optima, or None and perhaps a feasible point."""
         evaluator = Evaluator(problem, stop=stop)
         if evaluator.space.size == 0:
-            return solve(problem)
+            return solve(problem), None
         try:
             self._take_gradients(evaluator)
             optimum, feasible = self._stepped(evaluator, self._valleys(evaluator))
         except LimitReached:
-            return self._interrupted(evaluator)
+            return self._interrupted(evaluator), None
         if optimum is not None:
-            return _solution(evaluator, optimum, "SQP steps, or a descent from a feasible point")
-        guess = problem.inside(self.point.x)
-        starts = [guess if feasible is None else evaluator.space.to_x(feasible[:, None])[:, 0]]
+            how = "SQP steps, or a descent from a feasible point"
+            return _solution(evaluator, optimum, how), None
+        return None, None if feasible is None else evaluator.space.to_x(feasible[:, None])[:, 0]
+
+    def _searched(
+        self, problem: BoxProblem, feasible: Vector | None, stop: Stop | None
+    ) -> Solution:
+        """The optimum by a search that starts at the known optimum, or at a feasible point."""
+        starts = [problem.inside(self.point.x) if feasible is None else feasible]
         seed = self.effort.seed
         solution = solve(
             problem, starts=STARTS, samples=SAMPLES, more_starts=starts, seed=seed, stop=stop
@@ -123,12 +140,14 @@ class WarmStart:
                 stop=stop,
             )
         if solution.outcome is Outcome.LIMIT_INFEASIBLE:
+            evaluator = Evaluator(problem)
+            self._take_gradients(evaluator)
             return self._interrupted(evaluator)
         return _stopped(solution) if solution.outcome is Outcome.LIMIT else solution
 
     def solve_together(
         self, path: str, values: Sequence[float], rebuilt: Callable[[float], ActuatorProblem],
-        stop: Stop | None = None,
+        stop: Stop | None = None, *, search: bool = True,
     ) -> list[Point | None]:  # fmt: skip
         """Find the optimum for each value of one number, in parallel.
 
@@ -141,6 +160,7 @@ class WarmStart:
         path, values : PATH of the number, and its values
         rebuilt : function that builds the problem for a value of the number
         stop : called between steps; True ends the search, and the remaining values have no optimum
+        search : whether a search follows for values that no steps reach
         """
         present = self.actuator.subject.numbers.get(path)
         optima: list[Point | None] = [None] * len(values)
@@ -160,10 +180,11 @@ class WarmStart:
             for k in outwards:
                 if stop is not None and stop():
                     return optima
-                solution = self.solve(rebuilt(values[k]).problem, stop)
-                if solution.interrupted:
+                solved = self.solve if search else self.solve_near
+                solution = solved(rebuilt(values[k]).problem, stop)
+                if solution is not None and solution.interrupted:
                     return optima
-                if not solution.feasible:
+                if solution is None or not solution.feasible:
                     break
                 optima[k] = ladder.point_of(self.evaluator, solution)
         return optima

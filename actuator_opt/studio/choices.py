@@ -303,6 +303,13 @@ class Choices:
         studio, _ = self._split(changes, stop)
         return studio.describe() | {"menus": [menu.to_dict() for menu in menus(studio.actuator)]}
 
+    def first(self, changes: Numbers, stop: Stop) -> dict[str, Any]:
+        """As `Studio.first`, with `searched` as for `solve`."""
+        studio, numbers = self._split(changes, stop)
+        answer = studio.first(numbers, stop)
+        self._shown = studio
+        return answer | {"searched": studio.searched}
+
     def solve(
         self, changes: Numbers, stop: Stop, *, explain: bool = False, search: bool = False
     ) -> dict[str, Any]:
@@ -328,11 +335,17 @@ class Choices:
         return studio.prices(numbers, paths, stop, draw=draw)
 
     def curve(
-        self, changes: Numbers, path: str, values: Sequence[float], stop: Stop
+        self,
+        changes: Numbers,
+        path: str,
+        values: Sequence[float],
+        stop: Stop,
+        *,
+        search: bool = False,
     ) -> dict[str, Any]:
         """As `Studio.curve`."""
         studio, numbers = self._split(changes, stop)
-        return studio.curve(numbers, path, values, stop)
+        return studio.curve(numbers, path, values, stop, search=search)
 
     def cycle(self, changes: Numbers, name: str, stop: Stop) -> dict[str, Any]:
         """As `Studio.cycle`."""

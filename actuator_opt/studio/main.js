@@ -6,17 +6,18 @@ function objectiveText(si, about) {
   return `${about ? "about " : ""}${S.goal.mass ? "" : `${S.goal.label} `}${text}`;
 }
 function paint() {
-  const { shown: truthNow } = S, forecast = predicted(), current = S.shownFor === keyOf(S.changes);
-  const design = truthNow.feasible || !S.good ? truthNow : S.good;
-  document.body.classList.toggle("stale", !truthNow.feasible && current);
-  document.body.classList.toggle("about", !current && !(forecast && forecast.section));
+  const { shown: truthNow } = S, searching = S.searching === keyOf(S.changes), current = S.shownFor === keyOf(S.changes);
+  const forecast = searching ? null : predicted(), design = truthNow.feasible || !S.good ? truthNow : S.good;
+  document.body.classList.toggle("stale", searching || (!truthNow.feasible && current));
+  document.body.classList.toggle("about", !searching && !current && !(forecast && forecast.section));
   const objective = forecast ? forecast.objective : design.objective;
   const nothing = current && !truthNow.feasible;
-  byId("objective").textContent = nothing ? "nothing fits" : objective === null ? "no objective" : `${objectiveText(objective, forecast)}${current || forecast ? "" : " …"}`;
+  byId("objective").textContent = searching ? "no design found yet, searching …" : nothing ? "nothing fits" : objective === null ? "no objective" : `${objectiveText(objective, forecast)}${current || forecast ? "" : " …"}`;
   byId("objective").className = current ? "" : "about";
   const pinned = S.A && S.A.shown;
   byId("against").textContent = pinned && !nothing && objective !== null && (current || forecast) ? `A ${objectiveText(pinned.objective)}, ${signed((objective - pinned.objective) * S.goal.factor, 3)}` : "";
   drawSection(forecast && forecast.section ? forecast.section : design.section, pinned && pinned.section);
+  if (searching && S.good) byId("lengths").textContent = "The last design that fits is shown in grey.";
   if (nothing) byId("lengths").textContent = S.good ? "The last design that fits is shown in grey." : "Nothing fits: the nearest miss is shown in grey.";
   byId("card").hidden = !nothing;
   byId("card").textContent = nothing ? truthNow.card ?? `${truthNow.sentence}\nLooking for what would help …` : "";

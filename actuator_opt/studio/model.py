@@ -23,7 +23,7 @@ from ..evaluation.result import Check, Requirement
 from ..metrics import term_of
 from ..optimisation.result import Optimisation
 from ..rendering import text
-from . import cycle, section
+from . import cycle, quick, section
 from .saving import Saved, digest, save_text
 from .worker import Dropped, Stop
 
@@ -191,6 +191,35 @@ class Studio:
             **_scale(quantity),
         }
 
+    def first(self, changes: Numbers, stop: Stop) -> dict[str, Any]:
+        """The optimum with some numbers changed, at once; `solve` then evaluates its design.
+
+        If the steps near the session's optimum reach none, only `solve` can tell whether there is
+        one: the answer is then only that it has to be searched for.
+
+        Raises
+        ------
+        InputError, UsageError, Dropped : as for `solve`
+        """
+        changed = self._si(changes)
+        if not changed or (self._last is not None and self._last[0] == changed):
+            return self.solve(changed, stop)
+        self.present = changed
+        bare = None
+        if self._session is not None:
+            bare = self._session.bare_optimum(self._relative(changed), stop=stop)
+        if stop():
+            raise Dropped
+        if bare is None:
+            return {"searching": True, "changes": changed}
+        return {
+            **quick.shown(bare),
+            "feasible": True,
+            "whole": False,
+            "changed_on_disk": self.changed_on_disk(),
+            "changes": changed,
+        }
+
     def solve(self, changes: Numbers, stop: Stop, *, explain: bool = False) -> dict[str, Any]:
         """The optimum with some numbers changed; with `explain` also why nothing fits, if so.
 
@@ -285,9 +314,10 @@ class Studio:
         evaluation = result.best_evaluation
         return {
             "feasible": result.optimum,
+            "whole": True,
             "sentence": text.sentence(text.pretty(result.sentence)),
             "objective": result.objective_value if math.isfinite(result.objective_value) else None,
-            "section": section.drawing(evaluation),
+            "section": section.drawing(evaluation.outlines, evaluation.lengths),
             "masses": [
                 {"part": part.replace("_", " "), "mass": mass}
                 for part, mass in evaluation.mass_parts.items()
@@ -359,9 +389,17 @@ class Studio:
         return {"prices": rows}
 
     def curve(
-        self, changes: Numbers, path: str, values: Sequence[float], stop: Stop
+        self,
+        changes: Numbers,
+        path: str,
+        values: Sequence[float],
+        stop: Stop,
+        *,
+        search: bool = False,
     ) -> dict[str, Any]:
         """Optima for some values of one number; objective None for a value without a design.
+
+        Without `search`, only the steps near other optima say that a value has none.
 
         Raises
         ------
@@ -369,7 +407,7 @@ class Studio:
         InputError, UsageError : as for `solve`
         """
         changed = self._si(changes)
-        curve = self._at(changed).curve(path, list(values), stop=stop)
+        curve = self._at(changed).curve(path, list(values), stop=stop, search=search)
         if stop():
             raise Dropped
         return {

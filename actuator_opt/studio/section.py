@@ -25,8 +25,8 @@ def _points(parts: Sequence[Outline]) -> Array:
     return MM * np.concatenate(shapes)
 
 
-def drawing(evaluation: Evaluation) -> dict[str, Any]:
-    """The section of an evaluated design: parts, numbers of points, coordinates [mm], lengths."""
+def drawing(parts: Sequence[Outline], lengths: Mapping[str, float]) -> dict[str, Any]:
+    """The section of a design: parts, numbers of points, coordinates [mm], lengths."""
     return {
         "parts": [
             {
@@ -35,11 +35,11 @@ def drawing(evaluation: Evaluation) -> dict[str, Any]:
                 "sides": list(part.sides),
                 "points": [len(polygon) for polygon in part.polygons],
             }
-            for part in evaluation.outlines
+            for part in parts
         ],
-        "numbers": np.round(_points(evaluation.outlines), 4).tolist(),
+        "numbers": np.round(_points(parts), 4).tolist(),
         "lengths": " · ".join(
-            f"{words} {MM * evaluation.lengths[name]:.4g}" for name, words in _LENGTHS.items()
+            f"{words} {MM * lengths[name]:.4g}" for name, words in _LENGTHS.items()
         )
         + " mm",
     }

@@ -248,8 +248,8 @@ class _Wish:
     """The body of a request; every access checks type and size, and unknown keys are refused."""
 
     KEYS: ClassVar = frozenset(
-        {"tab", "changes", "describe", "explain", "paths", "draw", "path", "values", "name"}
-        | {"replacing", "search"}
+        {"tab", "changes", "describe", "whole", "explain", "paths", "draw", "path"}
+        | {"values", "search", "name", "replacing"}
     )
 
     def __init__(self, body: Body) -> None:
@@ -303,14 +303,17 @@ class _Wish:
 
 
 def _solve(server: Server, wish: _Wish) -> Any:
-    changes, describe = wish.changes, wish.flag("describe")
-    explain, search = wish.flag("explain"), wish.flag("search")
-    kind: Kind = "prices" if explain or search else "solve"
+    changes, describe, search = wish.changes, wish.flag("describe"), wish.flag("search")
+    explain = wish.flag("explain")
+    whole = wish.flag("whole") or explain or search
+    kind: Kind = "prices" if whole else "solve"
     studio = server.studio
 
     def work(stop: Stop) -> Any:
         more = {"design": studio.describe(changes, stop)} if describe else {}
-        return studio.solve(changes, stop, explain=explain, search=search) | more
+        if whole:
+            return studio.solve(changes, stop, explain=explain, search=search) | more
+        return studio.first(changes, stop) | more
 
     return server.worker.do(work, tab=wish.tab, kind=kind)
 
@@ -326,8 +329,11 @@ def _prices(server: Server, wish: _Wish) -> Any:
 
 def _curve(server: Server, wish: _Wish) -> Any:
     changes, path, values = wish.changes, wish.word("path"), wish.values
+    search = wish.flag("search")
     return server.worker.do(
-        lambda stop: server.studio.curve(changes, path, values, stop), tab=wish.tab, kind="curve"
+        lambda stop: server.studio.curve(changes, path, values, stop, search=search),
+        tab=wish.tab,
+        kind="curve",
     )
 
 

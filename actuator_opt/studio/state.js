@@ -3,7 +3,7 @@
 const PATIENCE = 400, CALM = 250, MOST_UNDO = 200, CHUNK = 5, MERGE = 800;
 const S = {
   design: null, goal: null, sliders: new Map(), menus: new Map(), describedFor: "", changes: {}, committed: {}, past: [], future: [],
-  shown: null, shownFor: "", good: null, A: null, priced: null, curves: new Map(), focused: "", touched: { path: "", key: false, time: 0 },
+  shown: null, shownFor: "", searching: "", good: null, A: null, priced: null, curves: new Map(), focused: "", touched: { path: "", key: false, time: 0 },
 };
 
 const keyOf = (changes, without) => JSON.stringify(Object.keys(changes).filter((path) => path !== without).sort().map((path) => [path, changes[path]]));
@@ -52,16 +52,30 @@ async function request() {
   truth(data, changes);
 }
 function truth(data, changes) {
+  control(S.touched.path)?.refuse("");
+  if (data.design) { S.describedFor = wordsOf(changes); describe(data.design); }
+  if (data.searching) { search(changes); return; }
+  S.searching = "";
   S.shown = data;
   S.shownFor = keyOf(changes);
   if (data.feasible) S.good = data;
-  control(S.touched.path)?.refuse("");
-  if (data.design) { S.describedFor = wordsOf(changes); describe(data.design); }
   paint();
   if (S.shownFor === keyOf(S.changes)) {
     byId("main").setAttribute("aria-busy", "false");
     settle();
   }
+}
+
+// The steps from the optimum reached no design: search for one, until a newer wish ends that.
+async function search(changes) {
+  const serial = LINE.latest;
+  S.searching = keyOf(changes);
+  paint();
+  let data = { dropped: true };
+  try { data = await ask("solve", { changes: wishes(changes), whole: true }); } catch (fault) { if (!(fault instanceof Unfit)) throw fault; }
+  if (serial !== LINE.latest || S.searching !== keyOf(S.changes)) return;
+  if (data.dropped) setTimeout(solve, CALM);
+  else truth(data, changes);
 }
 
 // ---- forecast: by the price as long as it holds, else along the curve ----
@@ -107,6 +121,15 @@ async function rest() {
       else truth(data, S.changes);
     }
     return;
+  }
+  if (!S.shown.whole) {
+    const data = await ask("solve", { changes, whole: true });
+    if (stale()) return;
+    if (data.dropped) { settle(); return; }
+    S.shown = data;
+    if (data.feasible) S.good = data;
+    paint();
+    if (!data.feasible) { settle(); return; }
   }
   if (S.shown.searched === false) {
     const data = await ask("solve", { changes, search: true });
@@ -155,6 +178,7 @@ async function trace(path, changes, stale) {
   let curve = S.curves.get(path);
   if (!curve || curve.key !== key) S.curves.set(path, curve = { key, points: [] });
   const here = slider.value, found = (v) => curve.points.some((one) => one.x === v);
+  const si = (v) => (v - slider.row.offset) / slider.row.factor;
   const near = slider.values().sort((a, b) => Math.abs(a - here) - Math.abs(b - here));
   for (;;) {
     const gaps = curve.points.filter((one) => one.y === null).map((one) => one.x);
@@ -162,12 +186,22 @@ async function trace(path, changes, stale) {
     const left = near.filter((v) => !found(v));
     const values = left.filter((v) => !beyond(v)).slice(0, CHUNK);
     if (!values.length) {
+      const edges = curve.points.filter((one) => one.y === null && !one.sought && !beyond(one.x));
+      if (edges.length) {
+        const [edge] = edges, answer = await ask("curve", { changes, path, values: [si(edge.x)], search: true });
+        if (stale()) return false;
+        if (answer.dropped) { settle(); return false; }
+        if (answer.infeasible) return false;
+        Object.assign(edge, { y: answer.objectives[0], dimensions: answer.dimensions[0], sought: true });
+        paintPrices();
+        continue;
+      }
       for (const x of left) curve.points.push({ x, y: null, dimensions: {} });
       curve.points.sort((a, b) => a.x - b.x);
       paintPrices();
       return true;
     }
-    const answer = await ask("curve", { changes, path, values: values.map((v) => (v - slider.row.offset) / slider.row.factor) });
+    const answer = await ask("curve", { changes, path, values: values.map(si) });
     if (stale()) return false;
     if (answer.dropped) { settle(); return false; }
     if (answer.infeasible) return false;

@@ -58,6 +58,7 @@ def test_the_repr_of_every_result_is_one_short_line(tmp_path):
         ao.read_scenario(DESIGNS / "scenarios" / "knee_step.yaml"), ao.explain("mass"),
         ao.explain("mass").entry, ao.catalogue("metrics"), evaluation().table("metrics"),
         ao.Prediction(0.2, {f"path{k}": 0.1 for k in range(40)}, valid=True),
+        ao.BareOptimum(0.2, {f"path{k}": 0.1 for k in range(40)}, (), 0.0, None, ()),
         ao.Price("a.b", 0.1, 0.2, 0.3, (0.05, None), ("x" * 200, None), {"c": 0.1}),
         ao.OptimumCurve("a.b", evaluation()["mass"].quantity, (0.1,), (None,), ({},)),
         ao.simulate(DESIGNS / "scenarios" / "course_valve_ramp.yaml").basis,

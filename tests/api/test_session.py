@@ -71,6 +71,41 @@ def test_changes_are_the_whole_difference(steel):
     assert same.status == "optimal"
 
 
+def test_new_numbers_give_the_problem_that_is_built_anew(steel):
+    """Same limits and values, at once; a number that decides a limit of no variable is built."""
+    x = steel._warm.point.x[:, None]
+    again = {}
+    for path in (STROKE, "requirements.stiffness_min.min", "load_cases[stance].force",
+                 "fluid.temperature", "head.clearance", "seals.rod.stretch"):  # fmt: skip
+        value = 1.03 * float(steel._warm.actuator.subject.numbers[path])
+        actuator, numbers = steel._changed({path: value})
+        _, problem, again[path] = steel._problem(actuator, numbers)
+        built = steel._built(actuator)[1]
+        assert problem.problem.same_rows_and_box(built.problem)
+        assert problem.problem.rows(x) == pytest.approx(built.problem.rows(x), rel=1e-9, abs=1e-9)
+        assert [row.label for row in problem.fixed] == [row.label for row in built.fixed]
+    assert list(again.values()) == [True] * 4 + [False] * 2
+
+
+def test_a_bare_optimum_is_the_optimum(steel):
+    """Objective, dimensions and active limits of `solve`; None beyond what steps reach."""
+    for changes in ({STROKE: 0.112}, {STROKE: 0.112, "supply.pressure": "20.5 MPa"}, {}):
+        bare, full = steel.bare_optimum(changes), steel.solve(changes)
+        assert bare.objective == pytest.approx(full.objective_value, rel=1e-12)
+        assert bare.variables == pytest.approx({v.path: v.value for v in full.variables})
+        assert bare.active == full.kkt.active
+        assert bare.residual <= 1e-6
+        assert {row.label for row in bare.limits} <= set(bare.active)
+        assert bare.subject.numbers[STROKE] == full.design.cylinder.stroke
+        assert bare.subject.numbers["cylinder.bore"] == bare.variables["cylinder.bore"]
+        assert bare.to_dict()["active"] == list(bare.active)
+    assert steel.bare_optimum({"requirements.stiffness_min.min": "60 kN/mm"}) is None
+    assert steel.bare_optimum({STROKE: 0.112}, stop=lambda: True) is None
+    moved = steel.at({STROKE: 0.112})
+    assert moved.optimum is not steel.optimum
+    assert moved.bare_optimum({}).objective == pytest.approx(moved.optimum.objective_value)
+
+
 def test_a_warm_optimum_meets_every_requirement_and_its_conditions(steel):
     """The result is evaluated with the changes, and stationary to 1e-6, without a sweep."""
     found = steel.solve({STROKE: 0.112})
