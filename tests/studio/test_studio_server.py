@@ -36,6 +36,10 @@ class Recorder:
         """As `Choices.describe`."""
         return {"name": "x"}
 
+    def first(self, changes, stop):
+        """As `Choices.first`."""
+        return self._note("first", dict(changes))
+
     def solve(self, changes, stop, *, explain=False, search=False):
         """As `Choices.solve`."""
         return self._note("solve", dict(changes), explain, search)
@@ -48,7 +52,7 @@ class Recorder:
         """As `Studio.prices`."""
         return self._note("prices", dict(changes), paths, draw)
 
-    def curve(self, changes, path, values, stop):
+    def curve(self, changes, path, values, stop, *, search=False):
         """As `Studio.curve`."""
         return self._note("curve", dict(changes), path, values)
 
@@ -115,7 +119,7 @@ def test_our_own_page_is_answered(served):
     server, studio = served
     wish = json.dumps({"changes": {"cylinder.stroke": "112 mm"}, "tab": "a"}).encode()
     assert sent(server, body=wish)[::2] == (200, {"fine": True})
-    assert studio.calls == [("solve", {"cylinder.stroke": "112 mm"}, False, False)]
+    assert studio.calls == [("first", {"cylinder.stroke": "112 mm"})]
     local = f"localhost:{server.server_port}"
     assert sent(server, Host=local, Origin=f"http://{local}")[0] == 200
 
