@@ -449,9 +449,7 @@ class Session(OneLine):
                 box, starts=STARTS, samples=SAMPLES, more_starts=[box.inside(start)],
                 seed=self._seed, stop=stop,
             )  # fmt: skip
-        optimum = result_of(
-            subject, problem, solution, prices=False, seed=self._seed, began=began
-        )
+        optimum = result_of(subject, problem, solution, prices=False, seed=self._seed, began=began)
         if not solution.feasible:
             return Variant(optimum, None)
         moved = object.__new__(Session)

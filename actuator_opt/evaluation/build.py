@@ -325,6 +325,7 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
         mass_leaves_out=weight.left_out(design),
         curve=_curve(run, v, metrics["stiffness_min"].case),
         outlines=outline.outlines(design, subject.materials, run.geometry),
+        lines=outline.lines(design, run.geometry),
         lengths=outline.lengths(design, run.geometry),
         wall=wall_study(subject, v, run),
         dynamics=dynamics.study(subject, v, run, metrics["stiffness_min"].case),

@@ -16,6 +16,8 @@ from ..design.material import Material
 from ..design.model import Design
 from ..joints.joint import (
     LEAST_METAL,
+    LINE,
+    DrawnPart,
     EndDimensions,
     EndSpan,
     EnteringRing,
@@ -237,21 +239,26 @@ def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         *_cap_bush(g, at),
     ]
     others: dict[tuple[str, str, int, bool], list[Polygon]] = {}
-    face, back = at.face, at.end + plate
+    for piece in _joints(design, g, at):
+        if piece.part == "caps":
+            caps.append(piece.shape)
+        elif piece.part != LINE:
+            key = (piece.part, piece.material, piece.bars, piece.radial)
+            others.setdefault(key, []).append(piece.shape)
+    yield "caps", design.caps.material, caps, 0, False
+    for (part, material, bars, radial), shapes in others.items():
+        yield part, material, shapes, bars, radial
+
+
+def _joints(design: Design, g: Geometry, at: _Stations) -> Iterator[DrawnPart]:
+    """All parts of the joints at both ends."""
+    face, back = at.face, at.end + float(g.plate)
     spans = {"cap": EndSpan(at.plate, 1, face, back), "head": EndSpan(at.end, -1, back, face)}
     fits = {"cap": g.cap_fit, "head": g.head_fit}
     for end_joint in joints_of(design):
         end = end_at(design, end_joint, RetentionNumbers(end_joint.section), g)
         for name in [end_joint.name] if end_joint.name else spans:
-            for piece in end_joint.joint.outline(end, fits[name], spans[name]):
-                if piece.part == "caps":
-                    caps.append(piece.shape)
-                else:
-                    key = (piece.part, piece.material, piece.bars, piece.radial)
-                    others.setdefault(key, []).append(piece.shape)
-    yield "caps", design.caps.material, caps, 0, False
-    for (part, material, bars, radial), shapes in others.items():
-        yield part, material, shapes, bars, radial
+            yield from end_joint.joint.outline(end, fits[name], spans[name])
 
 
 def _plate(
@@ -527,6 +534,11 @@ def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tup
             if polygons
         ),
     )
+
+
+def lines(design: Design, g: Geometry) -> tuple[Polygon, ...]:
+    """Lines of the drawing that bound no part, such as the flanks of threads; points as above."""
+    return tuple(x.shape for x in _joints(design, g, _stations(g)) if x.part == LINE)
 
 
 def lengths(design: Design, g: Geometry) -> dict[str, float]:

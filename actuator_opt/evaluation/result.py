@@ -433,6 +433,8 @@ class Evaluation(Displayed):
     outlines: tuple[Outline, ...]
     lengths: Mapping[str, float]
     """Dimensions for the drawing (m): bore, rod, barrel outer diameter, stroke, closed length…"""
+    lines: tuple[tuple[tuple[float, float], ...], ...] = ()
+    """Lines of the drawing that bound no part, such as threads: (axial position, radius) [m]."""
     wall: WallStudy | None = None
     """Stresses through the thickness of the barrel; None with the wall model `as_published`."""
     dynamics: DynamicsStudy | None = None

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from functools import reduce
-from math import radians
+from math import floor, radians
 from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
@@ -273,10 +273,30 @@ def rectangle(start: float, stop: float, low: float, high: float) -> Polygon:
     return ((start, low), (stop, low), (stop, high), (start, high))
 
 
+def thread_line(
+    *, start: float, length: float, pitch: float, root_radius: float, crest_radius: float
+) -> Polygon:
+    """Line of the flanks of a thread in the half-section, from root to crest and back [m].
+
+    `start` is the axial position of its lower end. Only whole turns are drawn.
+
+    >>> thread_line(start=0.0, length=2.5, pitch=1.0, root_radius=4.0, crest_radius=5.0)
+    ((0.0, 4.0), (0.5, 5.0), (1.0, 4.0), (1.5, 5.0), (2.0, 4.0))
+    """
+    halves = 2 * floor(length / pitch * (1 + ROUNDING))
+    radii = (root_radius, crest_radius)
+    return tuple((start + k * pitch / 2, radii[k % 2]) for k in range(halves + 1))
+
+
+LINE = "line"
+"""Name of a drawn part that is only a line, such as the flanks of a thread, without a volume."""
+
+
 class DrawnPart(NamedTuple):
     """A part as drawn in the half-section: a turned part, or a set of equal round bars.
 
-    `bars` is the number of bars, 0 for a turned part. They are parallel to the axis, or `radial`.
+    `bars` is the number of bars, 0 for a turned part. They are parallel to the axis, or `radial`. A
+    part with the name `LINE` is only a line; it belongs to no part.
     """
 
     part: str

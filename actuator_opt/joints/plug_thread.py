@@ -15,6 +15,7 @@ from ..base.numeric import Array, maximum, minimum
 from ..base.quantities import Quantity, length_text
 from ..models import mass, retaining_ring, thread
 from .joint import (
+    LINE,
     ON_METAL,
     ROUNDING,
     BarrelOpening,
@@ -36,6 +37,7 @@ from .joint import (
     notch_factor,
     ring_height,
     stated_rings,
+    thread_line,
     too_thin,
 )
 from .plug import BEHIND_SEAL, behind_seal, innermost_faults
@@ -168,6 +170,14 @@ def _outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]
     inner = float(_root_radius(end) - end.sizes["wall"])
     shape = span.beyond(near, near + length, inner, float(_pitch_radius(end)))
     yield DrawnPart("caps", end.cap, shape)
+    flanks = thread_line(
+        start=min(x for x, _ in shape),
+        length=length,
+        pitch=float(end.sizes["thread.pitch"]),
+        root_radius=float(_root_radius(end)),
+        crest_radius=float(_diameter(end)) / 2,
+    )
+    yield DrawnPart(LINE, end.cap, flanks)
 
 
 def _notes(end: End) -> Iterator[str]:

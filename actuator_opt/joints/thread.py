@@ -22,12 +22,15 @@ from ..models.strength import yield_utilisation
 from . import overlap
 from .joint import (
     LEAST_METAL,
+    LINE,
     NOT_BONDED,
     ON_METAL,
     ROUNDING,
     BarrelOpening,
+    DrawnPart,
     End,
     EndDimensions,
+    EndSpan,
     Fatigue,
     Joint,
     JointField,
@@ -42,6 +45,7 @@ from .joint import (
     judged_later,
     metal_strengths,
     notch_factor,
+    thread_line,
     too_thin,
 )
 
@@ -243,6 +247,20 @@ def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
     turned = mass.layer_area(inner_radius=radius, thickness=end.outer_radius - radius)
     ring = materials.get(end.layers[-1].material, "density") * turned * end.sizes["length"]
     return caps | {"barrel": -ring}
+
+
+def _outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]:
+    """Outline of the skirt at one end, and the flanks of its thread."""
+    yield from overlap.outline(end, fit, span)
+    sizes, length = _derived(end), float(end.sizes["length"])
+    flanks = thread_line(
+        start=min(span.face, span.face + span.inwards * length),
+        length=length,
+        pitch=float(end.sizes["thread.pitch"]),
+        root_radius=float(sizes.root_diameter) / 2,
+        crest_radius=min(float(sizes.diameter) / 2, float(end.outer_radius)),
+    )
+    yield DrawnPart(LINE, end.cap, flanks)
 
 
 def _notes(end: End) -> Iterator[str]:
@@ -494,7 +512,7 @@ JOINT = Joint(
     clamping=None,
     give=None,
     mass=_mass,
-    outline=overlap.outline,
+    outline=_outline,
     notes=_notes,
     strength=_strength,
     yields=_yields,

@@ -447,7 +447,10 @@ def _candidate_choices(
         fails = any(place.startswith(f"{name} seal") for place in places)
         if fails or matters(f"{section}.", f"materials.{seal.compound}."):
             for word, count in BACK_UPS.items():
-                if count > seal.back_ups and (beside := back_up_entries(seal, section, count)) is not None:
+                if (
+                    count > seal.back_ups
+                    and (beside := back_up_entries(seal, section, count)) is not None
+                ):
                     yield f"{section}.back_up", word, beside
             if seal.seal_type.o_ring_gland:
                 for compound in SUBSTITUTES["seal"]:

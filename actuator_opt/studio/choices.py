@@ -382,9 +382,7 @@ class Choices:
         studio = self._studio(words, stop) if words else self._file
         gone = self._gone(changes, studio)
         return studio, {
-            path: value
-            for path, value in changes.items()
-            if path not in words and path not in gone
+            path: value for path, value in changes.items() if path not in words and path not in gone
         }
 
     def _gone(self, changes: Numbers, studio: Studio) -> set[str]:

@@ -150,9 +150,7 @@ def _panel(panel: Panel, rows: Rows, time: str = "") -> dict[str, Any]:
         "x": list(panel.x.range or (min(across), max(across))),
         "y": list(panel.y.range or even_range(values, zero=panel.y.zero)),
         "curves": curves,
-        "levels": [
-            {"value": x.value, "words": x.words, "limit": bool(x.sense)} for x in levels
-        ],
+        "levels": [{"value": x.value, "words": x.words, "limit": bool(x.sense)} for x in levels],
         "points": [
             {"x": x, "y": y, "words": words}
             for points in panel.points
@@ -164,5 +162,6 @@ def _panel(panel: Panel, rows: Rows, time: str = "") -> dict[str, Any]:
 def _rounded(values: Sequence[float] | np.ndarray[Any, Any]) -> list[float | None]:
     """Coordinates with a few digits; None where there is none."""
     return [
-        float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None for value in map(float, values)
+        float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
+        for value in map(float, values)
     ]

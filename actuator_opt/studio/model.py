@@ -317,7 +317,7 @@ class Studio:
             "whole": True,
             "sentence": text.sentence(text.pretty(result.sentence)),
             "objective": result.objective_value if math.isfinite(result.objective_value) else None,
-            "section": section.drawing(evaluation.outlines, evaluation.lengths),
+            "section": section.drawing(evaluation.outlines, evaluation.lines, evaluation.lengths),
             "masses": [
                 {"part": part.replace("_", " "), "mass": mass}
                 for part, mass in evaluation.mass_parts.items()

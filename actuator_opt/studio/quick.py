@@ -26,7 +26,9 @@ def shown(bare: BareOptimum) -> dict[str, Any]:
     return {
         "objective": bare.objective,
         "section": section.drawing(
-            outline.outlines(design, subject.materials, g), outline.lengths(design, g)
+            outline.outlines(design, subject.materials, g),
+            outline.lines(design, g),
+            outline.lengths(design, g),
         ),
         "masses": [{"part": part.replace("_", " "), "mass": mass} for part, mass in masses.items()],
         "mass": sum(masses.values()),

@@ -10,12 +10,12 @@ function widen(numbers) {
 }
 function pathsOf(parts, numbers) {
   let at = 0;
-  return parts.map(({ points, sides }) => {
+  return parts.map(({ points, sides, kind }) => {
     let d = "";
     for (const count of points) {
       const corners = [];
       for (let k = 0; k < count; k++, at += 2) corners.push([numbers[at], numbers[at + 1]]);
-      for (const side of sides) d += "M" + corners.map(([x, r]) => `${x.toFixed(4)} ${(side * r).toFixed(4)}`).join("L") + "Z";
+      for (const side of sides) d += "M" + corners.map(([x, r]) => `${x.toFixed(4)} ${(side * r).toFixed(4)}`).join("L") + (kind === "line" ? "" : "Z");
     }
     return d;
   });
@@ -33,7 +33,7 @@ function drawSection(section, pinned) {
     path.append(shape("title", {}, section.parts[k].part));
     return path;
   });
-  if (pinned) paths.push(shape("path", { class: "pinned", d: pathsOf(pinned.parts, pinned.numbers).filter((_, k) => pinned.parts[k].kind !== "oil").join("") }));
+  if (pinned) paths.push(shape("path", { class: "pinned", d: pathsOf(pinned.parts, pinned.numbers).filter((_, k) => !["oil", "line"].includes(pinned.parts[k].kind)).join("") }));
   const length = [500, 200, 100, 50, 20, 10, 5, 2, 1].find((one) => one < (right - left) / 4) || 1, y = radius + pad + foot * 0.5;
   svg.replaceChildren(
     ...paths,

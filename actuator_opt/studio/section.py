@@ -10,8 +10,9 @@ import numpy as np
 from ..base.numeric import Array
 from ..evaluation import Evaluation, PreparedDesign, prepare
 from ..evaluation.geometry import derive
-from ..evaluation.outline import outlines
+from ..evaluation.outline import lines, outlines
 from ..evaluation.result import Outline
+from ..joints.joint import Polygon
 
 MM = 1000.0
 STEP = 1e-4
@@ -19,14 +20,20 @@ STEP = 1e-4
 _LENGTHS = {"bore": "bore ⌀", "rod": "rod ⌀", "closed_length": "closed length"}
 
 
-def _points(parts: Sequence[Outline]) -> Array:
+def _points(parts: Sequence[Outline], lines: Sequence[Polygon]) -> Array:
     """Coordinates of all points in order, x then r, in mm."""
-    shapes = [np.array(polygon).ravel() for part in parts for polygon in part.polygons]
-    return MM * np.concatenate(shapes)
+    polygons = [polygon for part in parts for polygon in part.polygons]
+    return MM * np.concatenate([np.array(shape).ravel() for shape in (*polygons, *lines)])
 
 
-def drawing(parts: Sequence[Outline], lengths: Mapping[str, float]) -> dict[str, Any]:
-    """The section of a design: parts, numbers of points, coordinates [mm], lengths."""
+def drawing(
+    parts: Sequence[Outline], lines: Sequence[Polygon], lengths: Mapping[str, float]
+) -> dict[str, Any]:
+    """The section of a design: parts, numbers of points, coordinates [mm], lengths.
+
+    The last part has the lines that bound no part, such as threads.
+    """
+    threads = {"part": "thread", "kind": "line", "sides": [1, -1]}
     return {
         "parts": [
             {
@@ -36,8 +43,9 @@ def drawing(parts: Sequence[Outline], lengths: Mapping[str, float]) -> dict[str,
                 "points": [len(polygon) for polygon in part.polygons],
             }
             for part in parts
-        ],
-        "numbers": np.round(_points(parts), 4).tolist(),
+        ]
+        + ([threads | {"points": [len(line) for line in lines]}] if lines else []),
+        "numbers": np.round(_points(parts, lines), 4).tolist(),
         "lengths": " · ".join(
             f"{words} {MM * lengths[name]:.4g}" for name, words in _LENGTHS.items()
         )
@@ -77,5 +85,5 @@ def slopes(
 
 
 def _drawn(subject: PreparedDesign, values: Mapping[str, float]) -> Array:
-    geometry = derive(subject.values(values), subject.design)
-    return _points(outlines(subject.design, subject.materials, geometry))
+    design, geometry = subject.design, derive(subject.values(values), subject.design)
+    return _points(outlines(design, subject.materials, geometry), lines(design, geometry))

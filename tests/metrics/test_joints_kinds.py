@@ -354,3 +354,19 @@ def test_the_force_crosses_the_rim_behind_the_seal(name, inner):
     bare = ao.read(text_of(BLOCKS[name])).subject()
     found = compute(bare, bare.values()).computed.metrics["retention_burst_factor"]
     assert rows.keys() - found.keys() == {"plug behind its static seal"}
+
+
+def test_threads_are_drawn():
+    """Each end shows the flanks of its thread with its pitch, about the radius where parts meet."""
+    for name, length, pitch in (("thread", 10e-3, 1e-3), ("plug_thread", 8e-3, 0.75e-3)):
+        evaluation = ao.evaluate(ao.read(text_of(BLOCKS[name])))
+        caps = next(x for x in evaluation.outlines if x.part == "caps")
+        radii = {r for polygon in caps.polygons for _, r in polygon}
+        assert len(evaluation.lines) == 2
+        for line in evaluation.lines:
+            xs, rs = np.array(line).T
+            assert len(line) == 2 * int(length / pitch * (1 + 1e-9)) + 1
+            assert np.diff(xs) == pytest.approx(pitch / 2)
+            assert any(rs.min() < radius < rs.max() for radius in radii)
+            assert np.ptp(rs) == pytest.approx(0.6134 * pitch, rel=0.02)  # ISO 724: 17/24 H
+    assert ao.evaluate(ao.read(text_of(BLOCKS["bond"]))).lines == ()

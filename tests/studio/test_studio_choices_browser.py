@@ -140,10 +140,10 @@ def test_the_duty_cycle_runs(browser, tmp_path):
         assert all(x.get_attribute("cx") != y for x, y in zip(spots, first, strict=True))
         assert position.get_attribute("aria-valuetext") == told.text_content()
         assert page.locator("#play").text_content() == "Play"  # nothing runs by itself
-        before = position.input_value()
+        before = told.text_content()
         page.locator("#play").click()
         page.locator("#play", has_text="Pause").wait_for()
-        told.filter(has_not_text=told.text_content()).wait_for()
+        told.filter(has_not_text=before).wait_for()
         page.locator("#play").click()
         page.locator("#least").click()
         least = page.locator("#least-text").text_content()
