@@ -36,6 +36,10 @@ class Recorder:
         """As `Studio.describe`."""
         return {"name": "x"}
 
+    def first(self, changes, stop):
+        """As `Studio.first`."""
+        return self._note("first", dict(changes))
+
     def solve(self, changes, stop, *, explain=False):
         """As `Studio.solve`."""
         return self._note("solve", dict(changes), explain)
@@ -44,9 +48,9 @@ class Recorder:
         """As `Studio.prices`."""
         return self._note("prices", dict(changes), paths, draw)
 
-    def curve(self, changes, path, values, stop):
+    def curve(self, changes, path, values, stop, *, search=False):
         """As `Studio.curve`."""
-        return self._note("curve", dict(changes), path, values)
+        return self._note("curve", dict(changes), path, values, search)
 
     def save(self, changes, name, replacing):
         """As `Studio.save`."""
@@ -111,7 +115,7 @@ def test_our_own_page_is_answered(served):
     server, studio = served
     wish = json.dumps({"changes": {"cylinder.stroke": "112 mm"}, "tab": "a"}).encode()
     assert sent(server, body=wish)[::2] == (200, {"fine": True})
-    assert studio.calls == [("solve", {"cylinder.stroke": "112 mm"}, False)]
+    assert studio.calls == [("first", {"cylinder.stroke": "112 mm"})]
     local = f"localhost:{server.server_port}"
     assert sent(server, Host=local, Origin=f"http://{local}")[0] == 200
 
@@ -273,7 +277,7 @@ def test_no_path_of_a_client_reaches_the_disk(served, monkeypatch):
     [b"", b"[]", b"3", b"{", b"\xff", b'{"a": 1}', b'{"changes": []}', b'{"changes": {"x": NaN}}',
      b'{"changes": {"x": 1e999}}', b'{"changes": {"x": true}}', b'{"changes": {"x": null}}',
      b'{"changes": {"x": [1]}}', b'{"changes": {"x": "%s"}}' % (b"9" * 300), b"[" * 60_000,
-     b'{"changes": {"%s": 1}}' % (b"p" * 300), b'{"tab": 3}', b'{"explain": 1}',
+     b'{"changes": {"%s": 1}}' % (b"p" * 300), b'{"tab": 3}', b'{"explain": 1}', b'{"whole": 1}',
      json.dumps({"changes": {f"x{k}": 1 for k in range(65)}}).encode()],
 )  # fmt: skip
 def test_unfit_wishes_are_refused_by_a_sentence(served, body):
@@ -304,16 +308,19 @@ def test_other_unfit_wishes_are_refused(served, path, wish):
 def test_every_route_takes_what_it_needs(served):
     """The arguments reach the studio as they were sent."""
     server, studio = served
-    for path, wish in {
-        "/api/solve": {"describe": True},
-        "/api/prices": {"paths": ["x"], "draw": True},
-        "/api/curve": {"path": "x", "values": [1, 2.5]},
-        "/api/save": {"name": "x.yaml"},
-        "/api/report": {},
-    }.items():
+    for path, wish in (
+        ("/api/solve", {"describe": True}),
+        ("/api/solve", {"whole": True}),
+        ("/api/solve", {"explain": True}),
+        ("/api/prices", {"paths": ["x"], "draw": True}),
+        ("/api/curve", {"path": "x", "values": [1, 2.5], "search": True}),
+        ("/api/save", {"name": "x.yaml"}),
+        ("/api/report", {}),
+    ):
         assert sent(server, path=path, body=json.dumps(wish).encode())[0] == 200
     assert studio.calls == [
-        ("solve", {}, False), ("prices", {}, ["x"], True), ("curve", {}, "x", [1.0, 2.5]),
+        ("first", {}), ("solve", {}, False), ("solve", {}, True), ("prices", {}, ["x"], True),
+        ("curve", {}, "x", [1.0, 2.5], True),
         ("save", {}, "x.yaml", None), ("report", {}),
     ]  # fmt: skip
 
