@@ -8,7 +8,7 @@ function ticks(low, high) {
 }
 // points: [{x, y}] in display units, y null where no design was found; marks: [{x, y, kind, name}].
 function drawTrade(points, marks, across, up) {
-  const svg = byId("trade"), width = svg.clientWidth || 400, height = svg.clientHeight || 210;
+  const svg = byId("trade"), [width, height] = sizeOf(svg, 400, 210);
   svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   const ys = [...points, ...marks].map((one) => one.y).filter((y) => y !== null), xs = [...points, ...marks].map((one) => one.x);
   if (points.length < 2 || !ys.length) {

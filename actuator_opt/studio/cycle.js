@@ -151,5 +151,6 @@ byId("cycle").addEventListener("change", settle);
 byId("duty").addEventListener("toggle", () => { if (byId("duty").open) { paintCycle(); if (S.shown) settle(); } else stopPlaying(); });
 for (const id of ["shown-1", "shown-2"]) byId(id).addEventListener("change", paintCycle);
 byId("position").addEventListener("input", () => { if (C.playing) stopPlaying(); if (C.data) place(byId("position").valueAsNumber); });
+new ResizeObserver(paintCycle).observe(byId("trace-1"));
 byId("play").addEventListener("click", () => { if (C.data) play(); });
 byId("least").addEventListener("click", () => { if (C.playing) stopPlaying(); if (C.data) place(C.data.reserve.sample); });

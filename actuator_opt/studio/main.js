@@ -118,8 +118,8 @@ const ACTS = {
     slider.refuse("");
     if (S.touched.path !== slider.row.path) S.touched = { path: slider.row.path, key: false, time: 0 };
     note("");
-    paint();
     solve();
+    paint();
   },
   commit(slider, key) { commit(slider.row.path, key); },
   focus(slider) {
@@ -231,7 +231,8 @@ byId("help").addEventListener("click", () => byId("help-dialog").showModal());
 byId("help-close").addEventListener("click", () => byId("help-dialog").close());
 byId("across").addEventListener("change", () => { paintTrade(); settle(); });
 byId("up").addEventListener("change", paintTrade);
-addEventListener("resize", () => { if (S.shown) paint(); });
+const SIZED = new ResizeObserver(() => { SIZES.clear(); if (S.shown) paint(); });
+for (const id of ["section", "trade"]) SIZED.observe(byId(id));
 
 // ---- start ----
 function add(box, row) {

@@ -25,8 +25,8 @@ function drawSection(section, pinned) {
   widen(section.numbers);
   if (pinned) widen(pinned.numbers);
   const { left, right, radius } = EXTENT, pad = (right - left) * 0.02;
-  const width = right - left + 2 * pad;
-  const pixel = Math.max(width / (svg.clientWidth || 400), 2 * (radius + pad) / ((svg.clientHeight || 190) - 26)), foot = 26 * pixel;
+  const width = right - left + 2 * pad, [across, high] = sizeOf(svg, 400, 190);
+  const pixel = Math.max(width / across, 2 * (radius + pad) / (high - 26)), foot = 26 * pixel;
   svg.setAttribute("viewBox", `${left - pad} ${-radius - pad} ${width} ${2 * (radius + pad) + foot}`);
   const paths = pathsOf(section.parts, section.numbers).map((d, k) => {
     const path = shape("path", { class: section.parts[k].kind, d });

@@ -75,6 +75,12 @@ class Slider {
     if (text) { this.field.setAttribute("aria-invalid", "true"); this.field.setAttribute("aria-describedby", this.fault.id); }
     else { this.field.removeAttribute("aria-invalid"); this.field.removeAttribute("aria-describedby"); }
   }
+  // Whether a part was made from the same things the last time, so that it can stay.
+  same(part, ...things) {
+    const before = this[part];
+    this[part] = things;
+    return Boolean(before) && before.every((one, k) => one === things[k]);
+  }
   speak() {
     this.range.setAttribute("aria-valuetext", [this.text(this.value), this.price.textContent].filter(Boolean).join(", "));
   }
@@ -84,12 +90,14 @@ class Slider {
   // The price in words; `price` in SI, `edges` where no design was found.
   tell(price, goal, edges, old) {
     const words = [], { row } = this;
+    // Small numbers get their price per 0.1, 0.01, … of the unit, about a fifth of the number.
+    const size = Math.abs(this.value), share = size < 2 ? exact(10 ** Math.floor(Math.log10(size / 5))) : 1;
+    const small = (slope) => Math.abs(slope * price.value) < 1e-4 * Math.abs(goal.now), nothing = price && small(price.up) && small(price.down);
+    if (this.same("told", price, old, edges.low, edges.high, share, nothing)) return;
     if (price) {
-      // Small numbers get their price per 0.1, 0.01, … of the unit, about a fifth of the number.
-      const size = Math.abs(this.value), share = size < 2 ? exact(10 ** Math.floor(Math.log10(size / 5))) : 1;
       const per = (slope) => signed(share * slope * goal.factor / row.factor, 3);
       const unit = withUnit(goal.unit || goal.label, `per ${share === 1 && row.unit ? row.unit : withUnit(String(share), row.unit)}`);
-      const strong = node("strong"), nothing = Math.abs(price.up * price.value) < 1e-4 * Math.abs(goal.now) && Math.abs(price.down * price.value) < 1e-4 * Math.abs(goal.now);
+      const strong = node("strong");
       const [low, high] = [price.low, price.high].map((si) => (si === null ? null : exact(shown(row, si)))), digits = (v) => trimmed(v, 3);
       if (price.up === null && price.down === null) strong.textContent = "no design if it changes";
       else if (nothing) strong.textContent = "costs nothing";
@@ -98,16 +106,15 @@ class Slider {
       words.push(strong, low !== null && high !== null ? `, holds from ${digits(low)} to ${digits(high)}` : low !== null ? `, holds from ${digits(low)} up` : high !== null ? `, holds up to ${digits(high)}` : ", holds throughout");
       this.price.title = [low !== null && `below ${this.text(low, 3)}: ${price.below}`, high !== null && `above ${this.text(high, 3)}: ${price.above}`].filter(Boolean).join("\n");
     } else this.price.title = "";
-    if (edges) {
-      if (edges.low !== null) words.push(`${words.length ? "; " : ""}none found at ${this.text(edges.low, 4)} or less`);
-      if (edges.high !== null) words.push(`${words.length ? "; " : ""}none found at ${this.text(edges.high, 4)} or more`);
-    }
+    if (edges.low !== null) words.push(`${words.length ? "; " : ""}none found at ${this.text(edges.low, 4)} or less`);
+    if (edges.high !== null) words.push(`${words.length ? "; " : ""}none found at ${this.text(edges.high, 4)} or more`);
     this.price.replaceChildren(...words);
     this.price.classList.toggle("old", Boolean(old));
     this.speak();
   }
   // The track: where the price holds, what was solved ahead with its curve, where nothing was found.
   paint(price, points) {
+    if (this.same("drawn", price, points, this.low, this.high)) return this.edges;
     const at = (v) => 1000 * (Math.min(Math.max(v, this.low), this.high) - this.low) / (this.high - this.low);
     const band = (kind, from, to) => shape("rect", { class: kind, x: at(from), y: 10, width: Math.max(at(to) - at(from), 0), height: 6 });
     const drawn = [band("empty", this.low, this.high)], found = points.filter((one) => one.y !== null);
@@ -121,7 +128,8 @@ class Slider {
     if (found.length > 1) drawn.push(shape("polyline", { class: "line", points: found.map((one) => `${at(one.x).toFixed(1)},${(y1 > y0 ? 8 - 8 * (one.y - y0) / (y1 - y0) : 8).toFixed(2)}`).join(" ") }));
     if (this.file > this.low && this.file < this.high) drawn.push(shape("path", { class: "file", d: `M${at(this.file)} 7V19` }));
     this.track.replaceChildren(...drawn);
-    return { low: below.length ? below[below.length - 1].x : null, high: above.length ? above[0].x : null };
+    this.edges = { low: below.length ? below[below.length - 1].x : null, high: above.length ? above[0].x : null };
+    return this.edges;
   }
 }
 Slider.count = 0;

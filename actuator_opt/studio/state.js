@@ -102,6 +102,7 @@ function predicted() {
 }
 
 // ---- at rest: prices, the card if nothing fits, curves nearest first ----
+const UNKNOWN = [];
 const REST = { timer: 0, ranked: new Map(), done: false };
 const RESTING = [];  // what else is asked at rest: functions of changes and stale, false if it has to be asked again
 
@@ -171,12 +172,17 @@ async function rank(changes, stale) {
 // The curve of a number, as points in display units in order; empty if other numbers have changed.
 function curveOf(path) {
   const curve = S.curves.get(path);
-  return curve && curve.key === keyOf(S.changes, path) ? curve.points : [];
+  return curve && curve.key === keyOf(S.changes, path) ? curve.points : UNKNOWN;
 }
 async function trace(path, changes, stale) {
   const slider = S.sliders.get(path), key = keyOf(S.changes, path);
   let curve = S.curves.get(path);
   if (!curve || curve.key !== key) S.curves.set(path, curve = { key, points: [] });
+  const enter = (added) => {
+    const others = curve.points.filter((one) => added.every((other) => other.x !== one.x));
+    curve.points = [...others, ...added].sort((a, b) => a.x - b.x);
+    paintPrices();
+  };
   const here = slider.value, found = (v) => curve.points.some((one) => one.x === v);
   const si = (v) => (v - slider.row.offset) / slider.row.factor;
   const near = slider.values().sort((a, b) => Math.abs(a - here) - Math.abs(b - here));
@@ -192,22 +198,17 @@ async function trace(path, changes, stale) {
         if (stale()) return false;
         if (answer.dropped) { settle(); return false; }
         if (answer.infeasible) return false;
-        Object.assign(edge, { y: answer.objectives[0], dimensions: answer.dimensions[0], sought: true });
-        paintPrices();
+        enter([{ x: edge.x, y: answer.objectives[0], dimensions: answer.dimensions[0], sought: true }]);
         continue;
       }
-      for (const x of left) curve.points.push({ x, y: null, dimensions: {} });
-      curve.points.sort((a, b) => a.x - b.x);
-      paintPrices();
+      enter(left.map((x) => ({ x, y: null, dimensions: {} })));
       return true;
     }
     const answer = await ask("curve", { changes, path, values: values.map(si) });
     if (stale()) return false;
     if (answer.dropped) { settle(); return false; }
     if (answer.infeasible) return false;
-    values.forEach((x, k) => curve.points.push({ x, y: answer.objectives[k], dimensions: answer.dimensions[k] }));
-    curve.points.sort((a, b) => a.x - b.x);
-    paintPrices();
+    enter(values.map((x, k) => ({ x, y: answer.objectives[k], dimensions: answer.dimensions[k] })));
   }
 }
 
@@ -232,6 +233,6 @@ function travel(from, to) {
 function showChanges() {
   for (const [path, slider] of S.sliders) { slider.refuse(""); slider.show(S.changes[path] ?? slider.file); }
   CHOICES.show();
-  paint();
   solve();
+  paint();
 }

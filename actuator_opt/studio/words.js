@@ -13,6 +13,12 @@ function shape(name, attributes, text) {
   if (text !== undefined) made.textContent = text;
   return made;
 }
+// Width and height of a drawing in pixels; asked for once, as an answer waits for the layout.
+const SIZES = new Map();
+function sizeOf(svg, width, height) {
+  if (!SIZES.has(svg) && svg.clientWidth) SIZES.set(svg, [svg.clientWidth, svg.clientHeight]);
+  return SIZES.get(svg) ?? [width, height];
+}
 // A number with at most so many digits; a true minus sign.
 function trimmed(value, digits = 4) {
   const size = Math.abs(value);

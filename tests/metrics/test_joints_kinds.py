@@ -367,6 +367,6 @@ def test_threads_are_drawn():
             xs, rs = np.array(line).T
             assert len(line) == 2 * int(length / pitch * (1 + 1e-9)) + 1
             assert np.diff(xs) == pytest.approx(pitch / 2)
-            assert any(rs.min() < radius < rs.max() for radius in radii)
+            assert any(rs.min() < radius < rs.max() + 1e-9 for radius in radii)
             assert np.ptp(rs) == pytest.approx(0.6134 * pitch, rel=0.02)  # ISO 724: 17/24 H
     assert ao.evaluate(ao.read(text_of(BLOCKS["bond"]))).lines == ()

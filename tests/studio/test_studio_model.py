@@ -77,6 +77,29 @@ def test_solve_equals_optimise(studio):
     assert len(shown["section"]["numbers"]) == count
 
 
+def test_the_first_answer_is_the_whole_one(studio):
+    """Section, masses, dimensions and limits agree; without a design it only says so, at once."""
+    for wish in ({STIFFNESS: "9.3 kN/mm"}, {STIFFNESS: 9.3e6, "cylinder.stroke": "111 mm"}):
+        first = studio.first(wish, never)
+        whole = studio.solve(wish, never)
+        assert (first["whole"], whole["whole"]) == (False, True)
+        assert first["objective"] == pytest.approx(whole["objective"], rel=1e-9)
+        assert first["dimensions"] == pytest.approx(whole["dimensions"])
+        assert first["section"]["parts"] == whole["section"]["parts"]
+        assert first["section"]["numbers"] == pytest.approx(whole["section"]["numbers"], abs=2e-4)
+        assert first["section"]["lengths"] == whole["section"]["lengths"]
+        assert [x["part"] for x in first["masses"]] == [x["part"] for x in whole["masses"]]
+        assert first["mass"] == pytest.approx(whole["mass"])
+        assert {(x["name"], x["limit"], x["where"]) for x in first["holds"]} == {
+            (x["name"], x["limit"], x["where"]) for x in whole["holds"]
+        }
+        assert studio.first(wish, never)["whole"]  # known by now
+    none = {STIFFNESS: "10000 kN/mm"}
+    assert studio.first(none, never) == {"searching": True, "changes": {STIFFNESS: 1e10}}
+    with pytest.raises(Dropped):
+        studio.first({STIFFNESS: 9.15e6}, always)
+
+
 def test_changes_are_checked(studio):
     """Unknown, not finite, out of range, free dimensions, words: each is refused by name."""
     for wish in (

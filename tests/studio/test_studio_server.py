@@ -54,7 +54,7 @@ class Recorder:
 
     def curve(self, changes, path, values, stop, *, search=False):
         """As `Studio.curve`."""
-        return self._note("curve", dict(changes), path, values)
+        return self._note("curve", dict(changes), path, values, search)
 
     def save(self, changes, name, replacing):
         """As `Studio.save`."""
@@ -281,7 +281,7 @@ def test_no_path_of_a_client_reaches_the_disk(served, monkeypatch):
     [b"", b"[]", b"3", b"{", b"\xff", b'{"a": 1}', b'{"changes": []}', b'{"changes": {"x": NaN}}',
      b'{"changes": {"x": 1e999}}', b'{"changes": {"x": true}}', b'{"changes": {"x": null}}',
      b'{"changes": {"x": [1]}}', b'{"changes": {"x": "%s"}}' % (b"9" * 300), b"[" * 60_000,
-     b'{"changes": {"%s": 1}}' % (b"p" * 300), b'{"tab": 3}', b'{"explain": 1}',
+     b'{"changes": {"%s": 1}}' % (b"p" * 300), b'{"tab": 3}', b'{"explain": 1}', b'{"whole": 1}',
      json.dumps({"changes": {f"x{k}": 1 for k in range(65)}}).encode()],
 )  # fmt: skip
 def test_unfit_wishes_are_refused_by_a_sentence(served, body):
@@ -317,18 +317,22 @@ def test_other_unfit_wishes_are_refused(served, path, wish):
 def test_every_route_takes_what_it_needs(served):
     """The arguments reach the studio as they were sent."""
     server, studio = served
-    for path, wish in {
-        "/api/solve": {"describe": True, "search": True},
-        "/api/prices": {"paths": ["x"], "draw": True},
-        "/api/curve": {"path": "x", "values": [1, 2.5]},
-        "/api/cycle": {"name": "walk"},
-        "/api/save": {"name": "x.yaml"},
-        "/api/report": {},
-    }.items():
+    for path, wish in (
+        ("/api/solve", {"describe": True}),
+        ("/api/solve", {"whole": True}),
+        ("/api/solve", {"explain": True}),
+        ("/api/solve", {"search": True}),
+        ("/api/prices", {"paths": ["x"], "draw": True}),
+        ("/api/curve", {"path": "x", "values": [1, 2.5], "search": True}),
+        ("/api/cycle", {"name": "walk"}),
+        ("/api/save", {"name": "x.yaml"}),
+        ("/api/report", {}),
+    ):
         assert sent(server, path=path, body=json.dumps(wish).encode())[0] == 200
     assert studio.calls == [
-        ("solve", {}, False, True), ("prices", {}, ["x"], True), ("curve", {}, "x", [1.0, 2.5]),
-        ("cycle", {}, "walk"),
+        ("first", {}), ("solve", {}, False, False), ("solve", {}, True, False),
+        ("solve", {}, False, True), ("prices", {}, ["x"], True),
+        ("curve", {}, "x", [1.0, 2.5], True), ("cycle", {}, "walk"),
         ("save", {}, "x.yaml", None), ("report", {}),
     ]  # fmt: skip
 
