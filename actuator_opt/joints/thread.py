@@ -252,7 +252,7 @@ def _mass(end: End, materials: MaterialProperties) -> dict[str, Array]:
 def _outline(end: End, fit: EndDimensions, span: EndSpan) -> Iterator[DrawnPart]:
     """Outline of the skirt at one end, and the flanks of its thread."""
     yield from overlap.outline(end, fit, span)
-    sizes, length = _derived(end), float(end.sizes["length"])
+    sizes, length = _derived(end), float(fit.length)
     flanks = thread_line(
         start=min(span.face, span.face + span.inwards * length),
         length=length,

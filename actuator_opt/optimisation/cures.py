@@ -27,7 +27,7 @@ from ..base.units import unit
 from ..design import quantity_of, standard_sizes as standards
 from ..design.materials import Library, load_library
 from ..design.model import Design, Variable
-from ..design.seals import BACK_UPS, Seal
+from ..design.seals import BACK_UPS, SealElement
 from ..evaluation import PreparedDesign
 from ..joints.kinds import JOINTS
 from . import repairs
@@ -482,7 +482,7 @@ def _near_sections(section: float) -> list[float]:
     return [*smaller[-1:], *larger[:1]]
 
 
-def back_up_entries(seal: Seal, section: str, count: int) -> dict[str, str] | None:
+def back_up_entries(seal: SealElement, section: str, count: int) -> dict[str, str] | None:
     """Entries to change for `count` back-up rings on a seal; None if no standard gland fits."""
     if seal.back_up_material is not None and seal.back_up_thickness is not None:
         return {}
