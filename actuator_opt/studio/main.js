@@ -236,20 +236,26 @@ for (const id of ["section", "trade"]) SIZED.observe(byId(id));
 
 // ---- start ----
 function add(box, row) {
-  const slider = new Slider(row, ACTS);
-  S.sliders.set(row.path, slider);
+  if (!S.sliders.has(row.path)) {
+    S.sliders.set(row.path, new Slider(row, ACTS));
+    byId("across").append(node("option", { value: row.path, textContent: row.label }));
+  }
+  const slider = S.sliders.get(row.path);
+  slider.box.hidden = false;
   byId(box).append(slider.box);
-  byId("across").append(node("option", { value: row.path, textContent: row.label }));
 }
 function addFixed(ranked) {
   const dearest = S.design.numbers.filter((row) => ranked.get(row.path) > 0).sort((a, b) => ranked.get(b.path) - ranked.get(a.path)).slice(0, FIXED);
+  const changed = S.design.numbers.filter((row) => !row.asked && row.path in S.changes && S.sliders.has(row.path) && !dearest.includes(row));
+  for (const slider of S.sliders.values()) if (!slider.row.asked) slider.box.hidden = true;
   byId("fixed").replaceChildren();
-  for (const row of dearest) add("fixed", row);
+  for (const row of [...dearest, ...changed]) add("fixed", row);
   if (!dearest.length) byId("fixed").append(node("p", { className: "hint", textContent: "No fixed number changes the optimum." }));
 }
 // Names and numbers of the design with the present words.
 function describe(design) {
-  const up = byId("up").value;
+  const up = byId("up").value, pathsOf = (one) => one.numbers.map((row) => row.path).join();
+  if (pathsOf(S.design) !== pathsOf(design)) { REST.done = false; REST.ranked.clear(); }
   S.design = design;
   S.goal = design.goal;
   byId("up").replaceChildren(node("option", { value: "", textContent: S.goal.label }), ...design.dimensions.map((row) => node("option", { value: row.path, textContent: row.label })));

@@ -65,7 +65,7 @@ const CHOICES = {
       change(path, value);
       commit(path);
       LINE.latest++;
-      CHOICES.compared = before.feasible ? { menu, objective: before.objective } : { menu, objective: null };
+      CHOICES.compared = { menu, key: keyOf(S.changes), objective: before.feasible ? before.objective : null };
       truth(data, S.changes);
     } catch (fault) {
       if (!(fault instanceof Unfit)) throw fault;
@@ -92,7 +92,10 @@ const CHOICES = {
     if (byId("choices").hidden) byId("choices").open = innerWidth > WIDE;
     byId("choices").hidden = !groups.size;
     const known = new Set(rows.keys());
-    for (const [path, slider] of S.sliders) slider.box.hidden = !known.has(path);
+    for (const [path, slider] of S.sliders) slider.box.hidden = !known.has(path) || !slider.box.isConnected;
+    const across = byId("across");
+    for (const one of across.options) one.disabled = !known.has(one.value);
+    if (across.selectedOptions[0]?.disabled) across.value = [...across.options].find((one) => !one.disabled).value;
   },
   show() {
     for (const [path, menu] of S.menus) menu.show(S.changes[path] ?? menu.file);
@@ -102,6 +105,7 @@ const CHOICES = {
     const { compared } = CHOICES;
     if (!compared || S.shownFor !== keyOf(S.changes)) return;
     for (const menu of S.menus.values()) if (menu !== compared.menu) menu.tell("");
+    if (compared.key !== S.shownFor) { compared.menu.tell(""); return; }
     const { objective, feasible, searched } = S.shown;
     if (!feasible) { compared.menu.tell("nothing fits"); return; }
     const step = compared.objective === null || objective === null ? "" : `, ${difference(objective, compared.objective)}`;

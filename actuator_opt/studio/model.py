@@ -127,6 +127,7 @@ class Studio:
     def search(self, stop: Stop) -> None:
         """Search the whole range for a better optimum than that found near another design."""
         if self.searched or self._session is None:
+            self.searched = True
             return
         found = self._session.variant({}, thorough=True, stop=stop)
         if stop():
