@@ -50,7 +50,6 @@ def studio(
     """
     from ..base.files import require_folder
     from ..studio.choices import Choices
-    from ..studio.model import Studio
     from ..studio.server import Server
 
     if design == "-":
@@ -59,7 +58,7 @@ def studio(
     require_folder(out)
     job = Job(design, sets=sets, unset=unset, plugins=plugin, as_json=as_json, quiet=quiet)
     with Server(port or 0) as server:
-        opened = Choices(Studio(design, set=job.set, plugins=plugin or (), out=out, seed=seed))
+        opened = Choices.opened(design, set=job.set, plugins=plugin or (), out=out, seed=seed)
         if as_json:
             streams.out_json({"address": server.address})
         else:

@@ -10,13 +10,15 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any, TypeAlias, TypeGuard, get_args
 
-from ..api import Actuator
+from ..api import Actuator, optimise, read
+from ..base.arguments import Change
 from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, Fault, UsageError, remedy, shown
 from ..base.quantities import INPUTS, Quantity
-from ..design import Design, choices as keys, get
+from ..design import Design, choices as keys, get, quantity_of
 from ..design.build import build, copy_tree, to_tree
 from ..design.data_file_reader import attach, folder_of
 from ..design.kinds import MATERIAL_EXAMPLES, MaterialName, TableRow, ValueFault
@@ -24,8 +26,10 @@ from ..design.material import ROLES
 from ..design.materials import Library, load_library
 from ..design.paths import numbers as numbers_of, put, remove, resolve, spell, words_of
 from ..design.seals import BACK_UPS, SealElement
+from ..design.sizes import VariableGroup, groups
 from ..design.standard_sizes import SAME, o_ring_sections
 from ..design.structure import KeyEntry, Loc, child_at, leaves
+from ..design.writer import exact_text
 from ..evaluation.plugin import with_own
 from ..joints.kinds import JOINTS
 from ..optimisation.cures import back_up_entries
@@ -83,8 +87,8 @@ Reason: TypeAlias = Callable[[str, str], str]
 """Function of a PATH and a word: why the design cannot take the word, empty if it can."""
 
 
-def menus(actuator: Actuator) -> list[Menu]:
-    """All menus of a design, in the order of its file."""
+def menus(actuator: Actuator, sizes: Sequence[VariableGroup] = ()) -> list[Menu]:
+    """All menus of a design, in the order of its file; then those of listed `sizes`."""
     library = load_library()
 
     def reason(path: str, word: str) -> str:
@@ -94,7 +98,7 @@ def menus(actuator: Actuator) -> list[Menu]:
             return str(unfit)
         return ""
 
-    return list(_menus(actuator.design, library, reason))
+    return [*_menus(actuator.design, library, reason), *_sized(actuator.design, sizes)]
 
 
 def _menus(design: Design, library: Library, reason: Reason) -> Iterator[Menu]:
@@ -110,6 +114,19 @@ def _menus(design: Design, library: Library, reason: Reason) -> Iterator[Menu]:
         if len(options) > 1:
             word = next((x.word for x in options if x.size is not None and x.size == value), value)
             yield Menu(path, _label(loc, path), _group(loc, entry), str(word), options)
+
+
+def _sized(design: Design, sizes: Sequence[VariableGroup]) -> Iterator[Menu]:
+    """Menus of the numbers that take listed sizes."""
+    for group in sizes:
+        for path, values in zip(group.paths, zip(*group.rows, strict=True), strict=True):
+            quantity, now = quantity_of(path, design), get(design, path)
+            assert isinstance(now, float)
+            options = tuple(
+                Option(quantity.text(size, 6), quantity.text(size, 6), size=size)
+                for size in sorted({*values, now})
+            )
+            yield Menu(path, words_of(path), "Sizes", quantity.text(now, 6), options)
 
 
 def _options(
@@ -292,16 +309,49 @@ class Choices:
     Parameters
     ----------
     studio : the design as its file states it
+    sizes : listed sizes of numbers, which are no variables of this design any more
     """
 
-    def __init__(self, studio: Studio) -> None:
+    def __init__(self, studio: Studio, sizes: Sequence[VariableGroup] = ()) -> None:
         self._file = self._shown = studio
+        self._sizes = sizes
         self._studios: dict[tuple[tuple[str, str | None], ...], Studio] = {}
+
+    @classmethod
+    def opened(
+        cls,
+        path: str,
+        *,
+        set: Sequence[Change] = (),
+        plugins: Sequence[Path] = (),
+        out: Path = Path("reports"),
+        seed: int = 0,
+    ) -> Choices:
+        """Open a design file; parameters and errors as for `Studio`.
+
+        Variables with listed sizes stand at the sizes of the best design, and get menus.
+        """
+        sizes: tuple[VariableGroup, ...] = ()
+        if path != "-":
+            actuator = read(path, set=set, plugins=plugins)
+            sizes = groups(actuator.design)[0]
+        settled: list[Change] = []
+        if sizes and not actuator.design.choices:
+            best = optimise(actuator, seed=seed, prices=False).best_evaluation.design
+            for name in (name for group in sizes for name in group.paths):
+                value = get(best, name)
+                assert isinstance(value, float)
+                settled.append((f"variables.{name}", None))
+                settled.append((name, exact_text(value, quantity_of(name, best))))
+        studio = Studio(path, set=[*set, *settled], plugins=plugins, out=out, seed=seed)
+        return cls(studio, sizes)
 
     def describe(self, changes: Numbers, stop: Stop) -> dict[str, Any]:
         """Names and numbers of the design with these words, and its menus."""
         studio, _ = self._split(changes, stop)
-        return studio.describe() | {"menus": [menu.to_dict() for menu in menus(studio.actuator)]}
+        return studio.describe() | {
+            "menus": [x.to_dict() for x in menus(studio.actuator, self._sizes)]
+        }
 
     def first(self, changes: Numbers, stop: Stop) -> dict[str, Any]:
         """As `Studio.first`, with `searched` as for `solve`."""

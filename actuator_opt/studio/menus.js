@@ -86,7 +86,7 @@ const CHOICES = {
       groups.get(offered.group).push(menu);
     }
     const focused = document.activeElement;
-    byId("menus").replaceChildren(...["Joint", "Materials", "Seals", "Build"].filter((group) => groups.has(group)).map((group) =>
+    byId("menus").replaceChildren(...["Joint", "Sizes", "Materials", "Seals", "Build"].filter((group) => groups.has(group)).map((group) =>
       node("fieldset", {}, node("legend", { textContent: group }), ...groups.get(group).map((menu) => menu.box))));
     if (byId("menus").contains(focused)) focused.focus();
     if (byId("choices").hidden) byId("choices").open = innerWidth > WIDE;

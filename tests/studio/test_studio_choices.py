@@ -156,6 +156,28 @@ def test_the_long_search_is_no_worse(studio):
     assert studio.solve(wish, never)["objective"] == after["objective"]
 
 
+def test_listed_sizes_are_menus(tmp_path):
+    """The design opens at the best sizes; another size is solved, and the file repeats it."""
+    text = (DESIGNS / "steel_baseline.yaml").read_text("utf-8")
+    text = text.replace("  rod.outer_diameter:\n", "  rod.outer_diameter:\n    sizes: iso_3320\n")
+    (tmp_path / "sizes.yaml").write_text(text, "utf-8")
+    studio = Choices.opened(str(tmp_path / "sizes.yaml"))
+    described = studio.describe({}, never)
+    menu = next(x for x in described["menus"] if x["path"] == "rod.outer_diameter")
+    assert menu["group"] == "Sizes"
+    assert {option["size"] for option in menu["options"]} >= {12e-3, 14e-3, 16e-3}
+    best = ao.optimise(tmp_path / "sizes.yaml", prices=False).best_evaluation
+    first = studio.solve({}, never)
+    assert first["mass"] == pytest.approx(best.metrics["mass"].value, rel=1e-6)
+    shown = studio.solve({"rod.outer_diameter": 14e-3}, never)
+    assert shown["mass"] > first["mass"]
+    assert "--unset variables.rod.outer_diameter" in studio.command()
+    assert studio.save({"rod.outer_diameter": 14e-3}, "wide.yaml", None).written
+    evaluation = ao.evaluate(tmp_path / "wide.yaml")
+    assert evaluation.metrics["mass"].value == pytest.approx(shown["mass"], rel=1e-9)
+    assert evaluation.design.rod.outer_diameter == pytest.approx(14e-3)
+
+
 @pytest.mark.long
 def test_a_word_that_fits_nowhere(studio):
     """The nearest miss is shown, with the card; the next word is solved as usual."""
