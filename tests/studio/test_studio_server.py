@@ -48,9 +48,9 @@ class Recorder:
         """As `Studio.prices`."""
         return self._note("prices", dict(changes), paths, draw)
 
-    def curve(self, changes, path, values, stop, *, search=False):
+    def curve(self, changes, path, values, stop, *, search=False, best=""):
         """As `Studio.curve`."""
-        return self._note("curve", dict(changes), path, values, search)
+        return self._note("curve", dict(changes), path, values, search, best)
 
     def save(self, changes, name, replacing):
         """As `Studio.save`."""
@@ -313,14 +313,14 @@ def test_every_route_takes_what_it_needs(served):
         ("/api/solve", {"whole": True}),
         ("/api/solve", {"explain": True}),
         ("/api/prices", {"paths": ["x"], "draw": True}),
-        ("/api/curve", {"path": "x", "values": [1, 2.5], "search": True}),
+        ("/api/curve", {"path": "x", "values": [1, 2.5], "search": True, "best": "y"}),
         ("/api/save", {"name": "x.yaml"}),
         ("/api/report", {}),
     ):
         assert sent(server, path=path, body=json.dumps(wish).encode())[0] == 200
     assert studio.calls == [
         ("first", {}), ("solve", {}, False), ("solve", {}, True), ("prices", {}, ["x"], True),
-        ("curve", {}, "x", [1.0, 2.5], True),
+        ("curve", {}, "x", [1.0, 2.5], True, "y"),
         ("save", {}, "x.yaml", None), ("report", {}),
     ]  # fmt: skip
 
