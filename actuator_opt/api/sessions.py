@@ -340,9 +340,11 @@ class Session(OneLine):
         the optimum, or None if the steps near the session's optimum reach none or `stop` ended
         them; `solve` then tells whether a design exists
         """
+        from ..optimisation.solution import Outcome
+
         actuator, numbers = self._changed(changes)
         found = self._near(actuator, numbers, stop)
-        if found is None or not found.solution.feasible or found.solution.interrupted:
+        if found is None or found.solution.outcome is not Outcome.OPTIMUM:
             return None
         solution, problem = found.solution, found.problem
         assert solution.kkt is not None

@@ -100,9 +100,23 @@ class WarmStart:
         near, feasible = self._near(problem, stop)
         return self._searched(problem, feasible, stop) if near is None else near
 
-    def solve_near(self, problem: BoxProblem, stop: Stop | None = None) -> Solution | None:
-        """As `solve`, but without a search: None if the steps reach no optimum."""
-        return self._near(problem, stop)[0]
+    def solve_near(
+        self, problem: BoxProblem, stop: Stop | None = None, starts: Sequence[Vector] = ()
+    ) -> Solution | None:
+        """As `solve`, but without a search: None if no descent reaches a feasible design.
+
+        If the steps reach none, descents follow from the feasible point that they found, if any,
+        and from the points `starts` (n,).
+        """
+        near, feasible = self._near(problem, stop)
+        points = [*starts] if feasible is None else [feasible, *starts]
+        if near is not None or not points:
+            return near
+        descent = replace(problem, start=None)
+        found = solve(descent, starts=len(points), samples=0, more_starts=points, stop=stop)
+        if found.outcome in (Outcome.LIMIT, Outcome.LIMIT_INFEASIBLE):
+            return _stopped(found)
+        return found if found.feasible else None
 
     def _near(
         self, problem: BoxProblem, stop: Stop | None
@@ -164,10 +178,11 @@ class WarmStart:
         """
         present = self.actuator.subject.numbers.get(path)
         optima: list[Point | None] = [None] * len(values)
+        feasible: list[Vector | None] = [None] * len(values)
         missing = list(range(len(values)))
         if present is not None and self._follows(path, present, values, rebuilt):
             try:
-                optima = self._curve(path, values, stop)
+                optima, feasible = self._curve(path, values, stop)
             except LimitReached:
                 return optima
             missing = [k for k, optimum in enumerate(optima) if optimum is None]
@@ -180,8 +195,11 @@ class WarmStart:
             for k in outwards:
                 if stop is not None and stop():
                     return optima
-                solved = self.solve if search else self.solve_near
-                solution = solved(rebuilt(values[k]).problem, stop)
+                problem = rebuilt(values[k]).problem
+                starts = self._starts(values, optima, feasible, k)
+                solution = self.solve_near(problem, stop, starts)
+                if solution is None and search:
+                    solution = self.solve(problem, stop)
                 if solution is not None and solution.interrupted:
                     return optima
                 if solution is None or not solution.feasible:
@@ -328,13 +346,28 @@ class WarmStart:
                 return False
         return True
 
-    def _curve(self, path: str, values: Sequence[float], stop: Stop | None) -> list[Point | None]:
-        """The optimum for each value of a number; None where the parallel steps do not reach it."""
+    def _starts(
+        self,
+        values: Sequence[float],
+        optima: Sequence[Point | None],
+        feasible: Sequence[Vector | None],
+        k: int,
+    ) -> list[Vector]:
+        """Starts for value k of a curve: its feasible point, and the optimum of the next value."""
+        space, z = self.evaluator.space, feasible[k]
+        starts = [] if z is None else [space.to_x(z[:, None])[:, 0]]
+        known = [(abs(values[i] - values[k]), x.x) for i, x in enumerate(optima) if x is not None]
+        return starts + [x for _, x in sorted(known, key=lambda pair: pair[0])[:1]]
+
+    def _curve(
+        self, path: str, values: Sequence[float], stop: Stop | None
+    ) -> tuple[list[Point | None], list[Vector | None]]:
+        """Optimum and feasible point for each value of a number; None where steps reach none."""
         evaluator = Evaluator(self.actuator.problem, stop=stop)
         self._take_gradients(evaluator)
         changed = ChangedProblems(self.actuator.parametric((path,)), evaluator, np.array([values]))
         starts = np.repeat(self.point.z[:, None], len(values), axis=1)
-        return ladder.resolve_batch(changed, self.valleys, starts)[0]
+        return ladder.resolve_batch(changed, self.valleys, starts)
 
 
 def _solution(evaluator: Evaluator, point: Point, algorithm: str) -> Solution:

@@ -7,12 +7,13 @@ function ticks(low, high) {
   return found;
 }
 // points: [{x, y}] in display units, y null where no design was found; marks: [{x, y, kind, name}].
-function drawTrade(points, marks, across, up) {
+// `why` says why there is no curve.
+function drawTrade(points, marks, across, up, why) {
   const svg = byId("trade"), [width, height] = sizeOf(svg, 400, 210);
   svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   const ys = [...points, ...marks].map((one) => one.y).filter((y) => y !== null), xs = [...points, ...marks].map((one) => one.x);
-  if (points.length < 2 || !ys.length) {
-    svg.replaceChildren(shape("text", { x: 8, y: 24 }, "The curve is being calculated …"));
+  if (why || points.length < 2 || !ys.length) {
+    svg.replaceChildren(shape("text", { x: 8, y: 24 }, why || "The curve is being calculated …"));
     return;
   }
   const x0 = Math.min(...xs), x1 = Math.max(...xs);

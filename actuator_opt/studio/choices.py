@@ -392,10 +392,11 @@ class Choices:
         stop: Stop,
         *,
         search: bool = False,
+        best: str = "",
     ) -> dict[str, Any]:
         """As `Studio.curve`."""
         studio, numbers = self._split(changes, stop)
-        return studio.curve(numbers, path, values, stop, search=search)
+        return studio.curve(numbers, path, values, stop, search=search, best=best)
 
     def cycle(self, changes: Numbers, name: str, stop: Stop) -> dict[str, Any]:
         """As `Studio.cycle`."""

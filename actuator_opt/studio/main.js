@@ -79,15 +79,19 @@ function paintPrices() {
 function paintTrade() {
   const slider = S.sliders.get(byId("across").value), up = byId("up").value;
   if (!slider || !S.good) return;
-  const dimension = S.design.dimensions.find((row) => row.path === up), scale = dimension || S.goal;
-  const y = (si) => (si === null || si === undefined ? null : shown(scale, si)), pick = (design) => (dimension ? design.dimensions[up] : design.objective);
-  const points = curveOf(slider.row.path).map((one) => ({ x: one.x, y: y(one.y === null ? null : dimension ? one.dimensions[up] : one.y) }));
-  const marks = [], name = dimension ? dimension.label : S.goal.label;
-  if (S.A) marks.push({ x: S.A.changes[slider.row.path] ?? slider.file, y: y(pick(S.A.shown)), kind: "was", name: "A" });
-  if (S.shown.feasible && S.shownFor === keyOf(S.changes)) marks.push({ x: slider.value, y: y(pick(S.shown)), kind: "now", name: "now" });
-  drawTrade(points, marks, withUnit(slider.row.label, slider.row.unit && `[${slider.row.unit}]`), withUnit(name, scale.unit && `[${scale.unit}]`));
-  const found = points.filter((one) => one.y !== null);
-  const told = found.length > 1 ? `${name} ${withUnit(trimmed(found[0].y), scale.unit)} at ${slider.text(found[0].x, 4)}, ${withUnit(trimmed(found[found.length - 1].y), scale.unit)} at ${slider.text(found[found.length - 1].x, 4)}. Every point is an optimum.` : "";
+  const best = bestOf(), dimension = S.design.dimensions.find((row) => row.path === up), scale = best || dimension || S.goal;
+  const curve = curveAt(slider.row.path, best ? up : ""), y = (si) => (si === null || si === undefined ? null : shown(scale, si));
+  const pick = (design) => y(best ? design.reached && design.reached[up] : dimension ? design.dimensions[up] : design.objective);
+  const points = curve.points.map((one) => ({ x: one.x, y: y(one.y === null || !dimension ? one.y : one.dimensions[up]) }));
+  const kept = best && curve.budget !== null ? ` at ${withUnit(trimmed(shown(S.goal, curve.budget), 4), S.goal.unit)}` : "";
+  const marks = [], name = best ? best.label + kept : dimension ? dimension.label : S.goal.label;
+  const mark = (x, design, kind, name) => { if (pick(design) !== null) marks.push({ x, y: pick(design), kind, name }); };
+  if (S.A) mark(S.A.changes[slider.row.path] ?? slider.file, S.A.shown, "was", "A");
+  if (S.shown.feasible && S.shownFor === keyOf(S.changes)) mark(slider.value, S.shown, "now", "now");
+  const why = !best ? "" : up === slider.row.path ? "Choose two different limits." : curve.none ? "No design was found." : "";
+  drawTrade(points, marks, withUnit(slider.row.label, slider.row.unit && `[${slider.row.unit}]`), withUnit(name, scale.unit && `[${scale.unit}]`), why);
+  const found = points.filter((one) => one.y !== null), text = (one) => `${withUnit(trimmed(one.y), scale.unit)} at ${slider.text(one.x, 4)}`;
+  const told = why || (found.length > 1 ? `${name}${best ? (S.goal.maximise ? " or more" : " or less") : ""}: ${text(found[0])}, ${text(found[found.length - 1])}. Every point is an optimum.` : "");
   byId("trade-text").textContent = told;
   byId("trade").setAttribute("aria-label", told || "No curve yet");
 }
@@ -230,7 +234,7 @@ byId("save-no").addEventListener("click", () => byId("save-dialog").close());
 byId("help").addEventListener("click", () => byId("help-dialog").showModal());
 byId("help-close").addEventListener("click", () => byId("help-dialog").close());
 byId("across").addEventListener("change", () => { paintTrade(); settle(); });
-byId("up").addEventListener("change", paintTrade);
+byId("up").addEventListener("change", () => { paintTrade(); settle(); });
 const SIZED = new ResizeObserver(() => { SIZES.clear(); if (S.shown) paint(); });
 for (const id of ["section", "trade"]) SIZED.observe(byId(id));
 
@@ -258,8 +262,9 @@ function describe(design) {
   if (pathsOf(S.design) !== pathsOf(design)) { REST.done = false; REST.ranked.clear(); }
   S.design = design;
   S.goal = design.goal;
-  byId("up").replaceChildren(node("option", { value: "", textContent: S.goal.label }), ...design.dimensions.map((row) => node("option", { value: row.path, textContent: row.label })));
-  byId("up").value = design.dimensions.some((row) => row.path === up) ? up : "";
+  const group = (label, rows) => node("optgroup", { label }, ...rows.map((row) => node("option", { value: row.path, textContent: row.label })));
+  byId("up").replaceChildren(node("option", { value: "", textContent: S.goal.label }), ...(design.best.length ? [group(`with the same ${S.goal.label}`, design.best)] : []), group("dimensions", design.dimensions));
+  byId("up").value = [...design.best, ...design.dimensions].some((row) => row.path === up) ? up : "";
   CHOICES.offer(design);
   CHOICES.show();
   offerCycles(design.cycles ?? []);

@@ -25,6 +25,7 @@ from ..optimisation.result import Optimisation
 from ..rendering import text
 from . import cycle, quick, section
 from .saving import Saved, digest, save_text
+from .trade import TradeOff, tradable
 from .worker import Dropped, Stop
 
 Numbers = Mapping[str, float | str]
@@ -76,6 +77,7 @@ class Studio:
         """Changed numbers of the design that the page showed last."""
         self._last: tuple[dict[str, float], Optimisation] | None = None
         self._moved: tuple[dict[str, float], Session] | None = None
+        self._trade: tuple[dict[str, float], str, TradeOff] | None = None
         self._base: dict[str, float] = {}
         self._session: Session | None = None
         self.searched = True
@@ -109,7 +111,8 @@ class Studio:
         other = copy(self)
         other.actuator = self.actuator.changed(entries)
         other._words = [*self._words, *_changing(entries.items())]
-        other.present, other._base, other._last, other._moved = {}, {}, None, None
+        other.present, other._base, other._last = {}, {}, None
+        other._moved = other._trade = None
         same = other.actuator.design.variables.keys() == self.actuator.design.variables.keys()
         other.searched = self._session is None or not same
         if self._session is None:
@@ -136,7 +139,7 @@ class Studio:
         gain = sign * (self._opening.objective_value - found.optimum.objective_value)
         if found.session is not None and gain > SAME * abs(self._opening.objective_value):
             self._opening, self._session = found
-            self._last = self._moved = None
+            self._last = self._moved = self._trade = None
         self.searched = True
 
     def same_file(self, other: Studio) -> None:
@@ -167,7 +170,17 @@ class Studio:
                 | _scale(quantity_of(row.path, design))
                 for row in optimum.variables
             ],
+            "best": [
+                {"path": path, "label": f"best {term_of(metric.name)}"} | _scale(metric.quantity)
+                for path in self._tradable
+                for metric in [optimum.evaluation.metrics[path.split(".")[1]]]
+            ],
         }
+
+    @property
+    def _tradable(self) -> list[str]:
+        """PATHs of the limits whose best value can be traced."""
+        return tradable(self._opening.start, self._opening.evaluation)
 
     def _number(self, path: str, value: float) -> dict[str, Any] | None:
         """A number that the page can change; None for a whole number or a value of zero."""
@@ -325,6 +338,10 @@ class Studio:
             ],
             "mass": evaluation.metrics["mass"].value,
             "holds": _held(evaluation, result),
+            "reached": {
+                f"requirements.{row.metric}.{row.sense}": row.value
+                for row in evaluation.requirements
+            },
             "dimensions": {row.path: row.value for row in result.variables},
             "changed_on_disk": self.changed_on_disk(),
         }
@@ -397,10 +414,18 @@ class Studio:
         stop: Stop,
         *,
         search: bool = False,
+        best: str = "",
     ) -> dict[str, Any]:
         """Optima for some values of one number; objective None for a value without a design.
 
-        Without `search`, only the steps near other optima say that a value has none.
+        Parameters
+        ----------
+        changes : changed numbers
+        path, values : the number and its values
+        stop : true once nobody wants the answer
+        search : whether only a search may say that a value has no design
+        best : PATH of a limit whose metric becomes the objective, while the design's own objective
+            keeps its present value (see `TradeOff`); empty: the design's own objective
 
         Raises
         ------
@@ -408,6 +433,13 @@ class Studio:
         InputError, UsageError : as for `solve`
         """
         changed = self._si(changes)
+        if best:
+            traced = self._traded(changed, best, stop).curve(
+                path, list(values), stop, search=search
+            )
+            if stop():
+                raise Dropped
+            return dict(traced)
         curve = self._at(changed).curve(path, list(values), stop=stop, search=search)
         if stop():
             raise Dropped
@@ -416,6 +448,17 @@ class Studio:
             "objectives": curve.objectives,
             "dimensions": [dict(row) for row in curve.variables],
         }
+
+    def _traded(self, changed: dict[str, float], best: str, stop: Stop) -> TradeOff:
+        if best not in self._tradable:
+            message = "is no limit whose metric can be an objective"
+            raise UsageError(Diagnostic(message, "choose one of the list", path=best))
+        if self._trade is None or self._trade[:2] != (changed, best):
+            present = self._at(changed).optimum
+            metric = present.evaluation.metrics[present.objective_metric]
+            actuator = self.actuator.changed(changed)
+            self._trade = changed, best, TradeOff(actuator, best, metric, stop, self._seed)
+        return self._trade[2]
 
     def cycle(self, changes: Numbers, name: str, stop: Stop) -> dict[str, Any]:
         """A duty cycle at the optimum, as `cycle.drawn`.

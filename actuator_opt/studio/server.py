@@ -249,7 +249,7 @@ class _Wish:
 
     KEYS: ClassVar = frozenset(
         {"tab", "changes", "describe", "whole", "explain", "paths", "draw", "path"}
-        | {"values", "search", "name", "replacing"}
+        | {"values", "search", "best", "name", "replacing"}
     )
 
     def __init__(self, body: Body) -> None:
@@ -329,9 +329,9 @@ def _prices(server: Server, wish: _Wish) -> Any:
 
 def _curve(server: Server, wish: _Wish) -> Any:
     changes, path, values = wish.changes, wish.word("path"), wish.values
-    search = wish.flag("search")
+    search, best = wish.flag("search"), wish.word("best")
     return server.worker.do(
-        lambda stop: server.studio.curve(changes, path, values, stop, search=search),
+        lambda stop: server.studio.curve(changes, path, values, stop, search=search, best=best),
         tab=wish.tab,
         kind="curve",
     )

@@ -102,7 +102,7 @@ function predicted() {
 }
 
 // ---- at rest: prices, the card if nothing fits, curves nearest first ----
-const UNKNOWN = [];
+const UNKNOWN = { points: [], budget: null, none: false };
 const REST = { timer: 0, ranked: new Map(), done: false };
 const RESTING = [];  // what else is asked at rest: functions of changes and stale, false if it has to be asked again
 
@@ -149,8 +149,12 @@ async function rest() {
   paintPrices();
   announce();
   if (!REST.done && !(await rank(changes, stale))) return;
-  for (const path of new Set([S.focused, byId("across").value])) if (path && !(await trace(path, changes, stale))) return;
+  const across = byId("across").value, best = bestOf();
+  for (const path of new Set([S.focused, best ? "" : across])) if (path && !(await trace(path, changes, stale))) return;
+  if (best && best.path !== across) await trace(across, changes, stale, best.path);
 }
+// The limit whose best value the trade-off shows; undefined if it shows something else.
+const bestOf = () => S.design.best.find((row) => row.path === byId("up").value);
 // Price all fixed numbers once; those that matter most get sliders.
 async function rank(changes, stale) {
   const left = S.design.numbers.filter((row) => !row.asked && !REST.ranked.has(row.path)).map((row) => row.path);
@@ -170,14 +174,17 @@ async function rank(changes, stale) {
   return false;
 }
 // The curve of a number, as points in display units in order; empty if other numbers have changed.
-function curveOf(path) {
-  const curve = S.curves.get(path);
-  return curve && curve.key === keyOf(S.changes, path) ? curve.points : UNKNOWN;
+// That of the best value of a limit also depends on the number's own present value.
+const keyOfCurve = (path, best) => (best ? keyOf(S.changes) : keyOf(S.changes, path));
+function curveAt(path, best = "") {
+  const curve = S.curves.get(path + best);
+  return curve && curve.key === keyOfCurve(path, best) ? curve : UNKNOWN;
 }
-async function trace(path, changes, stale) {
-  const slider = S.sliders.get(path), key = keyOf(S.changes, path);
-  let curve = S.curves.get(path);
-  if (!curve || curve.key !== key) S.curves.set(path, curve = { key, points: [] });
+const curveOf = (path) => curveAt(path).points;
+async function trace(path, changes, stale, best = "") {
+  const slider = S.sliders.get(path);
+  let curve = curveAt(path, best);
+  if (curve === UNKNOWN) S.curves.set(path + best, curve = { key: keyOfCurve(path, best), points: [], budget: null, none: false });
   const enter = (added) => {
     const others = curve.points.filter((one) => added.every((other) => other.x !== one.x));
     curve.points = [...others, ...added].sort((a, b) => a.x - b.x);
@@ -194,20 +201,20 @@ async function trace(path, changes, stale) {
     if (!values.length) {
       const edges = curve.points.filter((one) => one.y === null && !one.sought && !beyond(one.x));
       if (edges.length) {
-        const [edge] = edges, answer = await ask("curve", { changes, path, values: [si(edge.x)], search: true });
+        const [edge] = edges, answer = await ask("curve", { changes, path, best, values: [si(edge.x)], search: true });
         if (stale()) return false;
         if (answer.dropped) { settle(); return false; }
-        if (answer.infeasible) return false;
         enter([{ x: edge.x, y: answer.objectives[0], dimensions: answer.dimensions[0], sought: true }]);
         continue;
       }
       enter(left.map((x) => ({ x, y: null, dimensions: {} })));
       return true;
     }
-    const answer = await ask("curve", { changes, path, values: values.map(si) });
+    const answer = await ask("curve", { changes, path, best, values: values.map(si) });
     if (stale()) return false;
     if (answer.dropped) { settle(); return false; }
-    if (answer.infeasible) return false;
+    if (answer.infeasible) { curve.none = true; paintPrices(); return false; }
+    curve.budget = answer.budget ?? null;
     enter(values.map((x, k) => ({ x, y: answer.objectives[k], dimensions: answer.dimensions[k] })));
   }
 }

@@ -159,6 +159,27 @@ def test_a_curve_has_optima_and_gaps(studio):
     assert answer["dimensions"][1] == {}
 
 
+def test_the_best_of_one_limit_against_another(studio):
+    """Friction is least, the mass stays, and less stiffness allows less friction."""
+    best = "requirements.friction_running.max"
+    described = {row["path"]: row for row in studio.describe()["best"]}
+    assert described[best]["label"] == "best running friction"
+    assert described[best]["unit"] == "N"
+    shown = studio.solve({}, never)
+    answer = studio.curve({}, STIFFNESS, [8e6, 8.5e6], never, best=best)
+    low, high = answer["objectives"]
+    assert low < high <= shown["reached"][best]
+    assert shown["objective"] <= answer["budget"] <= shown["objective"] * 1.001
+    numbers = {**answer["dimensions"][1], STIFFNESS: 8.5e6}
+    there = ao.evaluate(ao.read(studio._file).changed(numbers)).metrics
+    assert there["friction_running"].value == pytest.approx(high, rel=1e-6)
+    assert there["mass"].value <= answer["budget"] * (1 + 1e-6)
+    with pytest.raises(UsageError, match="no limit"):
+        studio.curve({}, STIFFNESS, [9e6], never, best="requirements.mass.max")
+    with pytest.raises(Dropped):
+        studio.curve({STIFFNESS: 9.1e6}, STIFFNESS, [9e6], always, best=best)
+
+
 def test_a_saved_file_is_the_optimum(studio, text):
     """Comments stay, the changed limit stands there, and `evaluate` agrees to 1e-9."""
     wish = {STIFFNESS: "9.5 kN/mm"}

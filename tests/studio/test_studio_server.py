@@ -52,9 +52,9 @@ class Recorder:
         """As `Studio.prices`."""
         return self._note("prices", dict(changes), paths, draw)
 
-    def curve(self, changes, path, values, stop, *, search=False):
+    def curve(self, changes, path, values, stop, *, search=False, best=""):
         """As `Studio.curve`."""
-        return self._note("curve", dict(changes), path, values, search)
+        return self._note("curve", dict(changes), path, values, search, best)
 
     def save(self, changes, name, replacing):
         """As `Studio.save`."""
@@ -323,7 +323,7 @@ def test_every_route_takes_what_it_needs(served):
         ("/api/solve", {"explain": True}),
         ("/api/solve", {"search": True}),
         ("/api/prices", {"paths": ["x"], "draw": True}),
-        ("/api/curve", {"path": "x", "values": [1, 2.5], "search": True}),
+        ("/api/curve", {"path": "x", "values": [1, 2.5], "search": True, "best": "y"}),
         ("/api/cycle", {"name": "walk"}),
         ("/api/save", {"name": "x.yaml"}),
         ("/api/report", {}),
@@ -332,7 +332,7 @@ def test_every_route_takes_what_it_needs(served):
     assert studio.calls == [
         ("first", {}), ("solve", {}, False, False), ("solve", {}, True, False),
         ("solve", {}, False, True), ("prices", {}, ["x"], True),
-        ("curve", {}, "x", [1.0, 2.5], True), ("cycle", {}, "walk"),
+        ("curve", {}, "x", [1.0, 2.5], True, "y"), ("cycle", {}, "walk"),
         ("save", {}, "x.yaml", None), ("report", {}),
     ]  # fmt: skip
 
