@@ -407,58 +407,6 @@ class Session(OneLine):
         moved._differentiable |= self._differentiable  # keys and words decide it
         return moved
 
-    @one_thread()
-    def variant(
-        self,
-        changes: Mapping[str, float | str | None],
-        *,
-        thorough: bool = False,
-        stop: Callable[[], bool] | None = None,
-    ) -> Variant:
-        """The optimum with other words, such as a material or a joint, and a session there.
-
-        If the free dimensions stay the same, the search starts from this session's optimum, as in
-        `solve`. Otherwise, or with `thorough`, a full search tries this optimum as one of its
-        starts; a dimension that only the new design has starts at its value in the file.
-
-        Parameters
-        ----------
-        changes : words and numbers by PATH, relative to the design as read; None removes the key
-        thorough : whether to search the whole range, which may find a better optimum elsewhere
-        stop : as for `solve`
-
-        Raises
-        ------
-        InputError
-            the words do not suit the design, or leave a requirement without meaning
-        """
-        from ..optimisation.run import result_of
-        from ..optimisation.solver import solve
-        from ..optimisation.warm_start import WarmStart
-
-        began = time.perf_counter()
-        require_changes(changes, unset=True)
-        with located(self._actuator):
-            actuator = self._actuator.changed(changes)
-        subject, problem = self._built(actuator)
-        box, known = problem.problem, self._named(self._warm.point.x)
-        if not thorough and tuple(problem.paths) == tuple(self._warm.actuator.paths):
-            solution = self._warm.solve(box, stop)
-        else:
-            values = subject.numbers
-            start = np.array([known.get(path, values[path]) for path in problem.paths])
-            solution = solve(
-                box, starts=STARTS, samples=SAMPLES, more_starts=[box.inside(start)],
-                seed=self._seed, stop=stop,
-            )  # fmt: skip
-        optimum = result_of(subject, problem, solution, prices=False, seed=self._seed, began=began)
-        if not solution.feasible:
-            return Variant(optimum, None)
-        moved = object.__new__(Session)
-        moved.optimum = optimum
-        moved._start(actuator, self._seed, WarmStart(problem, solution, self._warm.effort))
-        return Variant(optimum, moved)
-
     def predict(self, changes: Changes) -> Prediction:
         """Predict the optimum after a change of some numbers, linearly, without running models.
 
@@ -766,13 +714,6 @@ class Session(OneLine):
     def _named(self, x: Iterable[float]) -> dict[str, float]:
         """The values of the free dimensions by PATH."""
         return dict(zip(self._warm.actuator.paths, map(float, x), strict=True))
-
-
-class Variant(NamedTuple):
-    """A design with other words: its optimum, and a session there, or None if nothing fits."""
-
-    optimum: Optimisation
-    session: Session | None
 
 
 class _Resolved(NamedTuple):

@@ -275,7 +275,7 @@ def _is_idle(fault: Fault | Diagnostic, tree: dict[str, Any], word: Loc) -> Type
 
 
 def _why(faults: Sequence[Fault | Diagnostic], tree: dict[str, Any]) -> str:
-    """What a design lacks for a word, or else the first fault."""
+    """Missing keys that a word needs, or else the first fault."""
     lacks = dict.fromkeys(
         spell(x.loc, tree)
         for x in faults

@@ -43,7 +43,7 @@ _TOLD = (
     ("speed {}", "speed", SPEED), ("force reserve {}", "reserve", FORCE),
     ("valve {} open", "opening", OPENING), ("{} of the supply pressure needed", "share", OPENING),
 )  # fmt: skip
-"""What the text at a sample states: words, trace and quantity."""
+"""Content of the text at a sample: words, trace and quantity."""
 
 
 def drawn(evaluation: Evaluation, name: str) -> dict[str, Any]:
@@ -89,7 +89,7 @@ def drawn(evaluation: Evaluation, name: str) -> dict[str, Any]:
 
 
 def _limit(study: DutyStudy) -> str:
-    """What the shaded area of the plane is."""
+    """Meaning of the shaded area of the plane."""
     if study.opening_limit is None:
         return "Shaded: loads that the supply moves; the design states no valve."
     share = value_of(OPENING, study.opening_limit)
@@ -160,7 +160,7 @@ def _panel(panel: Panel, rows: Rows, time: str = "") -> dict[str, Any]:
 
 
 def _rounded(values: Sequence[float] | np.ndarray[Any, Any]) -> list[float | None]:
-    """Coordinates with a few digits; None where there is none."""
+    """Coordinates with a few digits; None instead of NaN and infinity."""
     return [
         float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
         for value in map(float, values)

@@ -52,7 +52,7 @@ Menu.count = 0;
 
 const CHOICES = {
   async choose(menu, value) {
-    const { path } = menu, before = S.shown, wish = menu.wish(value);
+    const { path } = menu, wish = menu.wish(value);
     byId("main").setAttribute("aria-busy", "true");
     menu.tell("searching …");
     try {
@@ -62,10 +62,11 @@ const CHOICES = {
         data = await ask("solve", { changes: { ...wishes(S.changes), [path]: wish }, describe: true });
       } while (data.dropped);
       menu.tell("");
+      const before = S.shown.feasible && S.shownFor === keyOf(S.changes) ? S.shown.objective : null;
       change(path, value);
       commit(path);
       LINE.latest++;
-      CHOICES.compared = { menu, key: keyOf(S.changes), objective: before.feasible ? before.objective : null };
+      CHOICES.compared = { menu, key: keyOf(S.changes), objective: before };
       truth(data, S.changes);
     } catch (fault) {
       if (!(fault instanceof Unfit)) throw fault;

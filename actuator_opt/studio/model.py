@@ -11,6 +11,7 @@ from typing import Any
 
 from ..api import Actuator, Session, optimise, read, report, results, session
 from ..api.reports import saved_text
+from ..api.variants import variant
 from ..base.arguments import Change
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.progress import watched
@@ -121,7 +122,7 @@ class Studio:
                 other._session = session(other.actuator, seed=self._seed)
         else:
             kept = {path: value for path, value in self._relative({}).items() if path in entries}
-            found = self._session.variant({**kept, **entries}, stop=stop)
+            found = variant(self._session, {**kept, **entries}, stop=stop)
             other._opening, other._session = found
         if stop():
             raise Dropped
@@ -132,7 +133,7 @@ class Studio:
         if self.searched or self._session is None:
             self.searched = True
             return
-        found = self._session.variant({}, thorough=True, stop=stop)
+        found = variant(self._session, {}, thorough=True, stop=stop)
         if stop():
             raise Dropped
         sign = -1.0 if _maximises(self._opening) else 1.0
