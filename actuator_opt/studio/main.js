@@ -27,6 +27,14 @@ function paint() {
   paintPrices();
   paintButtons();
 }
+const EXTENT = { left: Infinity, right: -Infinity, radius: 0 };
+function drawSection(section, pinned) {
+  const svg = byId("section");
+  for (const one of [section, pinned]) if (one) widen(EXTENT, one.numbers);
+  drawParts(svg, section, pinned, EXTENT, sizeOf(svg, 400, 190));
+  byId("lengths").textContent = section.lengths;
+  svg.setAttribute("aria-label", `Section to scale, retracted: ${section.lengths}${pinned ? "; A dashed where it differs" : ""}`);
+}
 function paintTable(id, rows) {
   const most = Math.max(...rows.flatMap((row) => [row.share, row.before ?? 0]), 1e-12);
   byId(id).replaceChildren(...rows.map((row) => {

@@ -12,6 +12,7 @@ from ..evaluation import Evaluation, PreparedDesign, prepare
 from ..evaluation.geometry import derive
 from ..evaluation.outline import outlines
 from ..evaluation.result import Outline
+from ..explorer import part_of_section
 
 MM = 1000.0
 STEP = 1e-4
@@ -28,15 +29,7 @@ def _points(parts: Sequence[Outline]) -> Array:
 def drawing(parts: Sequence[Outline], lengths: Mapping[str, float]) -> dict[str, Any]:
     """The section of a design: parts, numbers of points, coordinates [mm], lengths."""
     return {
-        "parts": [
-            {
-                "part": part.part.replace("_", " "),
-                "kind": part.kind,
-                "sides": list(part.sides),
-                "points": [len(polygon) for polygon in part.polygons],
-            }
-            for part in parts
-        ],
+        "parts": [part_of_section(part) for part in parts],
         "numbers": np.round(_points(parts), 4).tolist(),
         "lengths": " · ".join(
             f"{words} {MM * lengths[name]:.4g}" for name, words in _LENGTHS.items()

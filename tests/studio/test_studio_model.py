@@ -79,7 +79,7 @@ def test_solve_equals_optimise(studio):
     held = {row["name"] for row in shown["holds"]}
     assert "stiffness" in held
     assert not any(row["missed"] for row in shown["holds"])
-    count = sum(2 * points for part in shown["section"]["parts"] for points in part["points"])
+    count = sum(2 * points for part in shown["section"]["parts"] for points in part["polygons"])
     assert len(shown["section"]["numbers"]) == count
 
 
