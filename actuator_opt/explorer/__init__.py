@@ -268,7 +268,7 @@ def _template(template: Template, dimensions: list[int]) -> dict[str, Any]:
     zero = template.numbers - template.slopes[:, dimensions] @ template.origin[dimensions]
     rows, places = np.nonzero(template.slopes[:, dimensions])
     return {
-        "parts": [_part(outline) for outline in template.outlines],
+        "parts": [part_of_section(outline) for outline in template.outlines],
         "numbers": [round(MM * float(value), 5) + 0.0 for value in zero],
         "slopes": [
             [int(row), int(k), round(float(template.slopes[row, dimensions[k]]), 7)]
@@ -277,7 +277,8 @@ def _template(template: Template, dimensions: list[int]) -> dict[str, Any]:
     }
 
 
-def _part(outline: Outline) -> dict[str, Any]:
+def part_of_section(outline: Outline) -> dict[str, Any]:
+    """Name, kind, numbers of points and side of a part, as `section.js` draws it."""
     return {
         "part": outline.part,
         "kind": outline.kind,
@@ -286,7 +287,18 @@ def _part(outline: Outline) -> dict[str, Any]:
 
 
 FOLDER = Path(__file__).parent
-SCRIPTS = ("data", "front", "scatter", "zoom", "axes", "section", "table", "compare", "main")
+SCRIPTS = (
+    "data",
+    "front",
+    "scatter",
+    "zoom",
+    "axes",
+    "section",
+    "shapes",
+    "table",
+    "compare",
+    "main",
+)
 _ESCAPES = {c: f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029"}
 
 

@@ -28,6 +28,14 @@ function paint() {
   paintButtons();
   CHOICES.tell();
 }
+const EXTENT = { left: Infinity, right: -Infinity, radius: 0 };
+function drawSection(section, pinned) {
+  const svg = byId("section");
+  for (const one of [section, pinned]) if (one) widen(EXTENT, one.numbers);
+  drawParts(svg, section, pinned, EXTENT, sizeOf(svg, 400, 190));
+  byId("lengths").textContent = section.lengths;
+  svg.setAttribute("aria-label", `Section to scale, retracted: ${section.lengths}${pinned ? "; A dashed where it differs" : ""}`);
+}
 function paintTable(id, rows) {
   const most = Math.max(...rows.flatMap((row) => [row.share, row.before ?? 0]), 1e-12);
   byId(id).replaceChildren(...rows.map((row) => {
@@ -258,8 +266,8 @@ function addFixed(ranked) {
 }
 // Names and numbers of the design with the present words.
 function describe(design) {
-  const up = byId("up").value, pathsOf = (one) => one.numbers.map((row) => row.path).join();
-  if (pathsOf(S.design) !== pathsOf(design)) { REST.done = false; REST.ranked.clear(); }
+  const up = byId("up").value, listed = (one) => one.numbers.map((row) => row.path).join();
+  if (listed(S.design) !== listed(design)) { REST.done = false; REST.ranked.clear(); }
   S.design = design;
   S.goal = design.goal;
   const group = (label, rows) => node("optgroup", { label }, ...rows.map((row) => node("option", { value: row.path, textContent: row.label })));

@@ -9,7 +9,7 @@ from copy import copy
 from pathlib import Path
 from typing import Any
 
-from ..api import Actuator, Session, optimise, read, report, results, session
+from ..api import Actuator, Price, Session, optimise, read, report, results, session
 from ..api.reports import saved_text
 from ..api.variants import variant
 from ..base.arguments import Change
@@ -184,10 +184,9 @@ class Studio:
         return tradable(self._opening.start, self._opening.evaluation)
 
     def _number(self, path: str, value: float) -> dict[str, Any] | None:
-        """A number that the page can change; None for a whole number or a value of zero."""
+        """A number that the page can change; None for one that is not finite."""
         quantity = quantity_of(path, self.actuator.design)
-        shown = quantity.to_display(value)
-        if quantity.dimension == "count" or shown == 0 or not math.isfinite(shown):
+        if not math.isfinite(value):
             return None
         label, sense = words_of(path), ""
         if path.startswith("requirements."):
@@ -200,7 +199,9 @@ class Studio:
             "label": label,
             "sense": sense,
             "asked": path.startswith(STATED),
+            "whole": quantity.dimension == "count",
             "value": value,
+            "size": self._size(quantity, value),
             "lower": quantity.lower if math.isfinite(quantity.lower) else None,
             "upper": quantity.upper if math.isfinite(quantity.upper) else None,
             **_scale(quantity),
@@ -234,6 +235,24 @@ class Studio:
             "changed_on_disk": self.changed_on_disk(),
             "changes": changed,
         }
+
+    def _size(self, quantity: Quantity, value: float) -> float:
+        """Size of a number in its display unit, from which the page takes its range and its price.
+
+        A zero has no size of its own. It gets that of the largest number of the same quantity in
+        the design, or else of the same dimension, or else one display unit (our choice).
+        """
+        own = abs(quantity.to_display(value))
+        if own:
+            return own
+        others = [
+            (other.name == quantity.name, abs(quantity.to_display(number)))
+            for path, number in numbers(self.actuator.design).items()
+            for other in [quantity_of(path, self.actuator.design)]
+            if other.dimension == quantity.dimension and math.isfinite(number)
+        ]
+        same = [size for alike, size in others if alike and size]
+        return max(same or [size for _, size in others if size], default=1.0)
 
     def solve(self, changes: Numbers, stop: Stop, *, explain: bool = False) -> dict[str, Any]:
         """The optimum with some numbers changed; with `explain` also why nothing fits, if so.
@@ -382,7 +401,7 @@ class Studio:
             if stop():
                 raise Dropped
             try:
-                found.append(moved.price(path))
+                found.append(self._price(moved, path, stop))
             except UsageError:
                 continue
         rows: list[dict[str, Any]] = [
@@ -400,12 +419,36 @@ class Studio:
             for price in found
         ]
         if draw:
+            smooth = [(row, x) for row, x in zip(rows, found, strict=True) if x.movement]
             drawn = section.slopes(
-                moved.optimum.evaluation, [(x.path, x.value, x.movement) for x in found]
+                moved.optimum.evaluation, [(x.path, x.value, x.movement) for _, x in smooth]
             )
-            for row, slopes in zip(rows, drawn, strict=True):
+            for (row, _), slopes in zip(smooth, drawn, strict=True):
                 row["section"] = slopes
         return {"prices": rows}
+
+    def _price(self, moved: Session, path: str, stop: Stop) -> Price:
+        """The price of a number; that of a whole number is the difference to its neighbours."""
+        quantity = quantity_of(path, self.actuator.design)
+        if quantity.dimension != "count":
+            return moved.price(path)
+        value = float(get(moved.optimum.design, path))
+        slopes, refused = list[float | None](), 0
+        for step in (-1, 1):
+            found = None
+            try:
+                if quantity.lower <= value + step <= quantity.upper:
+                    found = moved.bare_optimum({path: value + step}, stop=stop)
+            except InputError:  # contradicts other numbers
+                refused += 1
+            if stop():
+                raise Dropped
+            change = None if found is None else found.objective - moved.optimum.objective_value
+            slopes.append(None if change is None else step * change)
+        if refused == len(slopes):
+            raise UsageError(Diagnostic("cannot change alone", "edit the file", path=path))
+        down, up = slopes
+        return Price(path, value, down, up, (value - 1, value + 1), (None, None))
 
     def curve(
         self,

@@ -9,8 +9,18 @@ from functools import cache
 from pathlib import Path
 
 FOLDER = Path(__file__).parent
-SCRIPTS = ("words", "link", "section", "chart", "slider", "state", "menus", "cycle", "main")
-"""The script's parts, in order; each uses only the parts before it."""
+SCRIPTS = (
+    "../explorer/section",
+    "words",
+    "link",
+    "chart",
+    "slider",
+    "state",
+    "menus",
+    "cycle",
+    "main",
+)
+"""Parts of the script, in order; each uses only those before it. The section is the explorer's."""
 
 
 def _text(name: str) -> str:

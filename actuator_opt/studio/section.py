@@ -12,6 +12,7 @@ from ..evaluation import Evaluation, PreparedDesign, prepare
 from ..evaluation.geometry import derive
 from ..evaluation.outline import lines, outlines
 from ..evaluation.result import Outline
+from ..explorer import part_of_section
 from ..joints.joint import Polygon
 
 MM = 1000.0
@@ -33,18 +34,9 @@ def drawing(
 
     The last part has the lines that bound no part, such as threads.
     """
-    threads = {"part": "thread", "kind": "line", "sides": [1, -1]}
+    threads = {"part": "thread", "kind": "line", "polygons": [len(line) for line in lines]}
     return {
-        "parts": [
-            {
-                "part": part.part.replace("_", " "),
-                "kind": part.kind,
-                "sides": list(part.sides),
-                "points": [len(polygon) for polygon in part.polygons],
-            }
-            for part in parts
-        ]
-        + ([threads | {"points": [len(line) for line in lines]}] if lines else []),
+        "parts": [*map(part_of_section, parts), *([threads] if lines else [])],
         "numbers": np.round(_points(parts, lines), 4).tolist(),
         "lengths": " · ".join(
             f"{words} {MM * lengths[name]:.4g}" for name, words in _LENGTHS.items()

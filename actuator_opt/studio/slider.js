@@ -1,6 +1,7 @@
 // A number that the page changes: range, field with unit, price in words, track.
 // `row` is the number as the studio describes it; values here are in its display unit.
-const SHARE = 0.25, STEPS = 100, AHEAD = 20;
+// The range of a whole number reaches so many steps down and up.
+const SHARE = 0.25, STEPS = 100, AHEAD = 20, NEIGHBOURS = 3;
 
 class Slider {
   constructor(row, acts) {
@@ -25,13 +26,13 @@ class Slider {
     this.listen();
     this.show(this.value);
   }
-  // Let the range reach a quarter below and above a value.
+  // Let the range reach a quarter of the number's size below and above a value.
   centre(value) {
-    const { row } = this, room = SHARE * Math.abs(value);
+    const { row } = this, room = row.whole ? NEIGHBOURS : SHARE * (Math.abs(value) || row.size);
     const ends = [value - room, value + room], limits = [row.lower, row.upper].map((si) => (si === null ? null : shown(row, si)));
     this.low = limits[0] === null ? ends[0] : Math.max(ends[0], limits[0]);
     this.high = limits[1] === null ? ends[1] : Math.min(ends[1], limits[1]);
-    this.step = roundStep((this.high - this.low) / STEPS);
+    this.step = row.whole ? 1 : roundStep((this.high - this.low) / STEPS);
     this.range.min = this.low;
     this.range.max = this.high;
   }
@@ -43,8 +44,9 @@ class Slider {
     this.range.addEventListener("change", () => this.acts.commit(this));
     this.range.addEventListener("focus", () => this.acts.focus(this));
     this.range.addEventListener("keydown", (event) => {
+      const quarter = this.row.whole ? 1 : (this.high - this.low) / 4;
       const steps = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key] * (event.shiftKey ? 10 : 1) * this.step
-        || { PageDown: -1, PageUp: 1 }[event.key] * (this.high - this.low) / 4;
+        || { PageDown: -1, PageUp: 1 }[event.key] * quarter;
       if (!steps || event.ctrlKey || event.metaKey || event.altKey) return;
       event.preventDefault();
       this.show(onGrid(Math.min(Math.max(this.value + steps, this.low), this.high), this.step));
@@ -85,26 +87,31 @@ class Slider {
     this.range.setAttribute("aria-valuetext", [this.text(this.value), this.price.textContent].filter(Boolean).join(", "));
   }
   values() {
+    if (this.row.whole) return Array.from({ length: this.high - this.low + 1 }, (_, k) => this.low + k);
     return Array.from({ length: AHEAD + 1 }, (_, k) => exact(this.low + (this.high - this.low) * k / AHEAD));
   }
   // The price in words; `price` in SI, `edges` where no design was found.
   tell(price, goal, edges, old) {
     const words = [], { row } = this;
     // Small numbers get their price per 0.1, 0.01, … of the unit, about a fifth of the number.
-    const size = Math.abs(this.value), share = size < 2 ? exact(10 ** Math.floor(Math.log10(size / 5))) : 1;
-    const small = (slope) => Math.abs(slope * price.value) < 1e-4 * Math.abs(goal.now), nothing = price && small(price.up) && small(price.down);
+    const size = Math.abs(this.value) || row.size, share = row.whole ? 1 : size < 2 ? exact(10 ** Math.floor(Math.log10(size / 5))) : 1;
+    const small = (slope) => Math.abs(slope * row.size / row.factor) < 1e-4 * Math.abs(goal.now), nothing = price && small(price.up) && small(price.down);
     if (this.same("told", price, old, edges.low, edges.high, share, nothing)) return;
     if (price) {
       const per = (slope) => signed(share * slope * goal.factor / row.factor, 3);
       const unit = withUnit(goal.unit || goal.label, `per ${share === 1 && row.unit ? row.unit : withUnit(String(share), row.unit)}`);
       const strong = node("strong");
-      const [low, high] = [price.low, price.high].map((si) => (si === null ? null : exact(shown(row, si)))), digits = (v) => trimmed(v, 3);
-      if (price.up === null && price.down === null) strong.textContent = "no design if it changes";
+      const inside = (si) => si !== null && (row.lower === null || si > row.lower) && (row.upper === null || si < row.upper);
+      const [low, high] = [price.low, price.high].map((si) => (inside(si) ? exact(shown(row, si)) : null)), digits = (v) => trimmed(v, 3);
+      if (row.whole) {
+        const next = (slope, more) => `${slope === null ? "none found" : per(more ? slope : -slope)} with one ${more ? "more" : "fewer"}`;
+        strong.textContent = nothing ? "costs nothing" : `${goal.unit || goal.label}: ${next(price.up, true)}, ${next(price.down, false)}`;
+      } else if (price.up === null && price.down === null) strong.textContent = "no design if it changes";
       else if (nothing) strong.textContent = "costs nothing";
       else if (price.up === price.down || Math.abs(price.up - price.down) < 1e-6 * Math.abs(price.up)) strong.textContent = `${per(price.up)} ${unit}`;
       else strong.textContent = `${price.up === null ? "no design" : per(price.up)} more, ${price.down === null ? "no design" : per(price.down)} less, ${unit}`;
-      words.push(strong, low !== null && high !== null ? `, holds from ${digits(low)} to ${digits(high)}` : low !== null ? `, holds from ${digits(low)} up` : high !== null ? `, holds up to ${digits(high)}` : ", holds throughout");
-      this.price.title = [low !== null && `below ${this.text(low, 3)}: ${price.below}`, high !== null && `above ${this.text(high, 3)}: ${price.above}`].filter(Boolean).join("\n");
+      words.push(strong, row.whole ? "" : low !== null && high !== null ? `, holds from ${digits(low)} to ${digits(high)}` : low !== null ? `, holds from ${digits(low)} up` : high !== null ? `, holds up to ${digits(high)}` : ", holds throughout");
+      this.price.title = row.whole ? "" : [low !== null && `below ${this.text(low, 3)}: ${price.below}`, high !== null && `above ${this.text(high, 3)}: ${price.above}`].filter(Boolean).join("\n");
     } else this.price.title = "";
     if (edges.low !== null) words.push(`${words.length ? "; " : ""}none found at ${this.text(edges.low, 4)} or less`);
     if (edges.high !== null) words.push(`${words.length ? "; " : ""}none found at ${this.text(edges.high, 4)} or more`);

@@ -157,15 +157,15 @@ async function rest() {
 const bestOf = () => S.design.best.find((row) => row.path === byId("up").value);
 // Price all fixed numbers once; those that matter most get sliders.
 async function rank(changes, stale) {
-  const left = S.design.numbers.filter((row) => !row.asked && !REST.ranked.has(row.path)).map((row) => row.path);
+  const left = S.design.numbers.filter((row) => !row.asked && !REST.ranked.has(row.path));
   while (left.length) {
-    const paths = left.splice(0, 2 * CHUNK), answer = await ask("prices", { changes, paths });
+    const rows = left.splice(0, 2 * CHUNK), paths = rows.map((row) => row.path), answer = await ask("prices", { changes, paths });
     if (stale()) return false;
     if (answer.dropped || answer.infeasible) { settle(); return false; }
     const found = new Map(answer.prices.map((one) => [one.path, one]));
-    for (const path of paths) {
-      const price = found.get(path);
-      REST.ranked.set(path, price ? Math.max(Math.abs(price.up ?? Infinity), Math.abs(price.down ?? Infinity)) * Math.abs(price.value) : 0);
+    for (const row of rows) {
+      const price = found.get(row.path);
+      REST.ranked.set(row.path, price ? Math.max(Math.abs(price.up ?? Infinity), Math.abs(price.down ?? Infinity)) * row.size / row.factor : 0);
     }
   }
   REST.done = true;

@@ -1,16 +1,9 @@
 // Numbers and words of the page.
 const byId = (id) => document.getElementById(id);
-const SVG = "http://www.w3.org/2000/svg";
 
 function node(name, properties = {}, ...children) {
   const made = Object.assign(document.createElement(name), properties);
   made.append(...children);
-  return made;
-}
-function shape(name, attributes, text) {
-  const made = document.createElementNS(SVG, name);
-  for (const key in attributes) made.setAttribute(key, attributes[key]);
-  if (text !== undefined) made.textContent = text;
   return made;
 }
 // Width and height of a drawing in pixels; asked for once, as an answer waits for the layout.

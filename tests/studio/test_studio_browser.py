@@ -135,7 +135,7 @@ def test_a_beside_b(studio):
     """A stays as outline, masses and difference; swapping brings it back."""
     page, first = studio.page, studio.mass
     page.keyboard.press("p")
-    assert page.locator("#section .pinned").count() == 1
+    assert page.locator("#section .other").count() == 1
     studio.field().fill("9.1")
     studio.field().press("Enter")
     studio.slider().focus()
@@ -148,7 +148,7 @@ def test_a_beside_b(studio):
     assert studio.mass == first
     assert studio.text("against").startswith(f"A {second:.4g} g")
     page.keyboard.press("p")
-    assert page.locator("#section .pinned").count() == 0
+    assert page.locator("#section .other").count() == 0
 
 
 def test_typing_takes_units_and_refuses_nonsense(studio):
@@ -179,8 +179,27 @@ def test_the_trade_off_is_traced(studio):
     )
     assert page.locator("#trade .now").count() == 1
     page.locator("#up").select_option(label="bore")
-    assert studio.text("trade-text").startswith("bore ")
+    assert studio.text("trade-text").startswith("bore: ")
+    page.locator("#up").select_option(label="best running friction")
+    page.locator("#trade-text").filter(
+        has_text=re.compile("best running friction at .* g or less: ")
+    ).wait_for(timeout=60_000)
     page.locator("#up").select_option("")
+
+
+def test_what_nothing_reaches_is_searched_for(studio):
+    """The page says so at once, keeps the last design in grey, and a newer wish ends the search."""
+    page, before = studio.page, studio.mass
+    studio.field().fill("60 kN/mm")
+    studio.field().press("Enter")
+    page.locator("#objective").filter(has_text="no design found yet, searching").wait_for()
+    assert page.locator("body.stale").count() == 1
+    assert "shown in grey" in studio.text("lengths")
+    page.keyboard.press("Escape")
+    studio.slider().focus()
+    page.keyboard.press("Control+z")
+    assert studio.mass == before
+    assert page.locator("body.stale").count() == 0
 
 
 def test_saving_asks_before_it_replaces(studio):

@@ -53,7 +53,13 @@ def test_what_is_described(studio):
     asked = [row["label"] + row["sense"] for row in rows if row["asked"]]
     assert len(set(asked)) == len(asked)
     assert {"force, stance", "force, swing"} <= set(asked)
-    assert all(row["value"] * row["factor"] + row["offset"] for row in rows)
+    sizes = {row["path"]: row["size"] for row in rows}
+    assert all(size > 0 for size in sizes.values())
+    assert sizes[STIFFNESS] == pytest.approx(10)
+    assert sizes["load_cases[swing].side_load"] > 1  # a zero has the size of the largest force
+    assert [row["path"] for row in rows if row["whole"]] == [
+        "retention.count", "seals.piston.count", "seals.rod.count"
+    ]  # fmt: skip
     paths = [row["path"] for row in rows]
     assert len(set(paths)) == len(paths)
     assert not set(paths) & set(studio.actuator.design.variables)
@@ -73,7 +79,7 @@ def test_solve_equals_optimise(studio):
     held = {row["name"] for row in shown["holds"]}
     assert "stiffness" in held
     assert not any(row["missed"] for row in shown["holds"])
-    count = sum(2 * points for part in shown["section"]["parts"] for points in part["points"])
+    count = sum(2 * points for part in shown["section"]["parts"] for points in part["polygons"])
     assert len(shown["section"]["numbers"]) == count
 
 
@@ -131,10 +137,14 @@ def test_a_stopped_wish_is_dropped(studio):
 def test_prices_and_the_forecast_of_the_section(studio):
     """The price is that of a session there; the forecast of the section is off by second order."""
     wish = {STIFFNESS: "9 kN/mm"}
-    paths = [STIFFNESS, "cylinder.stroke", "seals.piston.count"]
+    paths = [STIFFNESS, "cylinder.stroke", "seals.rod.count", "clevis.neck", "retention.count"]
     answer = studio.prices(wish, paths, never, draw=True)["prices"]
-    assert [row["path"] for row in answer] == paths[:2]  # a whole number has no price
-    price = answer[0]
+    assert [row["path"] for row in answer] == paths[:4]  # the last cannot change alone
+    price, _, count, zero = answer
+    more = studio.solve({**wish, "seals.rod.count": 2}, never)["objective"]
+    assert count["up"] == pytest.approx(more - studio.solve(wish, never)["objective"], rel=1e-4)
+    assert (count["value"], zero["value"]) == (1, 0)
+    assert zero["up"] > 0
     reference = ao.session(ao.read(studio._file, set=wish)).price(STIFFNESS)
     assert price["up"] == pytest.approx(reference.slope_up, rel=1e-4)
     assert price["high"] > 1.02 * price["value"]
