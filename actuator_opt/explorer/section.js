@@ -8,7 +8,8 @@ function shape(name, attributes, text) {
   return made;
 }
 // The parts of a section, each with its path. `parts` say how many points each polygon has, and on
-// which sides of the axis it lies; a "line", such as a thread, is not closed; `numbers` are x and r of all points, perhaps with more after them.
+// which sides of the axis it lies; `numbers` are x and r of all points, perhaps with more after them.
+// A part of the kind "line", such as a thread, is not closed.
 function pathsOf({ parts, numbers }) {
   let at = 0;
   return parts.map(({ part, kind, polygons, sides = [1, -1] }) => {

@@ -401,7 +401,7 @@ def test_the_page_holds_no_data_and_no_way_to_inject(served):
     status, _, text = sent(server, "GET", "/", drop=["Origin", TOKEN_HEADER])
     assert status == 200
     assert server.token not in text
-    assert len(text.encode()) < 80_000
+    assert len(text.encode()) < 96_000
     injections = "innerHTML outerHTML insertAdjacent document.write eval( Function("
     assert not [word for word in injections.split() if word in text]
     assert not re.search(r"\b(?:src|href)=[\"'](?!data:,)", text)
