@@ -5,6 +5,7 @@ One studio and one browser serve all tests, in order: starting them is most of t
 
 from __future__ import annotations
 
+import io
 import re
 import signal
 import subprocess
@@ -12,6 +13,7 @@ import sys
 
 import pytest
 from cli_runner import DESIGNS
+from pypdf import PdfReader
 
 import actuator_opt as ao
 
@@ -238,6 +240,18 @@ def test_it_fits_every_width(studio, width):
           .map(x => x.outerHTML)"""
     )
     assert nameless == []
+
+
+def test_it_prints_on_one_page(studio):
+    """With prices, without what cannot be printed."""
+    studio.rest()
+    printed = PdfReader(io.BytesIO(studio.page.pdf()))
+    assert len(printed.pages) == 1
+    text = printed.pages[0].extract_text()
+    assert "Mass by part" in text
+    assert "per kN/mm" in text
+    assert "Undo" not in text
+    assert "Trade-off" not in text
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

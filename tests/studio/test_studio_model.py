@@ -241,9 +241,12 @@ def test_the_command_finds_the_same_design(studio):
 
 
 def test_the_report_is_that_of_the_state(studio):
-    """It is written under the design's name."""
+    """It is written under the design's name, and can be run again."""
     files = studio.report({STIFFNESS: "9.5 kN/mm"})
-    assert any(name.endswith("steel.pdf") for name in files)
+    (page,) = (name for name in files if name.endswith("steel.pdf"))
+    again = run("rerun", page, "--no-record")
+    assert again.code == 0
+    assert "the result is reproduced" in again.err
 
 
 def test_nothing_fits(studio, monkeypatch):
