@@ -316,6 +316,7 @@ class Choices:
         self._file = self._shown = studio
         self._sizes = sizes
         self._studios: dict[tuple[tuple[str, str | None], ...], Studio] = {}
+        self._menus: dict[Studio, list[dict[str, Any]]] = {}
 
     @classmethod
     def opened(
@@ -349,9 +350,9 @@ class Choices:
     def describe(self, changes: Numbers, stop: Stop) -> dict[str, Any]:
         """Names and numbers of the design with these words, and its menus."""
         studio, _ = self._split(changes, stop)
-        return studio.describe() | {
-            "menus": [x.to_dict() for x in menus(studio.actuator, self._sizes)]
-        }
+        if studio not in self._menus:
+            self._menus[studio] = [x.to_dict() for x in menus(studio.actuator, self._sizes)]
+        return studio.describe() | {"menus": self._menus[studio]}
 
     def first(self, changes: Numbers, stop: Stop) -> dict[str, Any]:
         """As `Studio.first`, with `searched` as for `solve`."""
@@ -460,7 +461,7 @@ class Choices:
             made.same_file(self._file)
             self._studios[key] = made
             if len(self._studios) > MOST_KEPT:
-                del self._studios[next(iter(self._studios))]
+                self._menus.pop(self._studios.pop(next(iter(self._studios))), None)
         return self._studios[key]
 
 
