@@ -117,7 +117,8 @@ def section(
     flanks = [
         [frame.point(x, side * r) for x, r in line] for line in evaluation.lines for side in (1, -1)
     ]
-    ink.path(flanks, pen=THIN)
+    if flanks:
+        ink.path(flanks, pen=THIN)
     centre = [(frame.x(first) - 4.0, frame.axis), (frame.x(last) + 4.0, frame.axis)]
     ink.path([centre], stroke=GREY, pen=THIN, dash=(6.0, 1.2, 0.8, 1.2))
     _balloons(ink, frame, outlines, rows)
