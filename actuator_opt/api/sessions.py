@@ -316,13 +316,13 @@ class Session(OneLine):
             the PATH names a free dimension
         """
         began = time.perf_counter()
-        numbers, found = self._solved(changes, stop)
-        optimisation = self._result(found, prices, began)
+        numbers, resolved = self._solved(changes, stop)
+        optimisation = self._result(resolved, prices, began)
         missed = any(not row.met for row in optimisation.evaluation.requirements)
-        if found.renumbered and found.solution.feasible and missed:  # a limit of no variable
-            found = self._anew(found.actuator, stop)
-            optimisation = self._result(found, prices, began)
-        self._latest = numbers, found, optimisation
+        if resolved.renumbered and resolved.solution.feasible and missed:  # a limit of no variable
+            resolved = self._anew(resolved.actuator, stop)
+            optimisation = self._result(resolved, prices, began)
+        self._latest = numbers, resolved, optimisation
         return optimisation
 
     def bare_optimum(
@@ -338,18 +338,18 @@ class Session(OneLine):
         Returns
         -------
         the optimum, or None if the steps near the session's optimum reach none or `stop` ended
-        them; `solve` then tells whether a design exists
+        them; only `solve` can then show whether a design exists
         """
         from ..optimisation.solution import Outcome
 
         actuator, numbers = self._changed(changes)
-        found = self._near(actuator, numbers, stop)
-        if found is None or found.solution.outcome is not Outcome.OPTIMUM:
+        resolved = self._near(actuator, numbers, stop)
+        if resolved is None or resolved.solution.outcome is not Outcome.OPTIMUM:
             return None
-        solution, problem = found.solution, found.problem
+        solution, problem = resolved.solution, resolved.problem
         assert solution.kkt is not None
         values = self._named(solution.x)
-        subject = replace(found.subject, numbers={**found.subject.numbers, **values})
+        subject = replace(resolved.subject, numbers={**resolved.subject.numbers, **values})
         return BareOptimum(
             objective=problem.goal.shown(solution.objective),
             variables=values,
@@ -359,13 +359,13 @@ class Session(OneLine):
             limits=tuple(row for row in problem.rows if row.label in solution.kkt.active),
         )
 
-    def _result(self, found: _Resolved, prices: bool, began: float) -> Optimisation:
+    def _result(self, resolved: _Resolved, prices: bool, began: float) -> Optimisation:
         from ..optimisation.run import result_of
 
         optimisation = result_of(
-            found.subject,
-            found.problem,
-            found.solution,
+            resolved.subject,
+            resolved.problem,
+            resolved.solution,
             prices=prices,
             seed=self._seed,
             began=began,
@@ -395,14 +395,16 @@ class Session(OneLine):
         if self._latest is None or self._latest[0] != self._changed(changes)[1]:
             self.solve(changes)
         assert self._latest is not None
-        _, found, optimum = self._latest
-        if not found.solution.feasible:
+        _, resolved, optimum = self._latest
+        if not resolved.solution.feasible:
             message = "no design meets all requirements with these numbers"
             raise Unsolvable(Diagnostic(message, "call optimise, which says what to relax"))
         moved = object.__new__(Session)
         moved.optimum = replace(optimum, sensitivities=())
         moved._start(
-            found.actuator, self._seed, WarmStart(found.problem, found.solution, self._warm.effort)
+            resolved.actuator,
+            self._seed,
+            WarmStart(resolved.problem, resolved.solution, self._warm.effort),
         )
         moved._differentiable |= self._differentiable  # keys and words decide it
         return moved
@@ -494,7 +496,7 @@ class Session(OneLine):
         stop : called between steps; True ends the search, and values not solved by then have no
             design
         search : whether to search where the steps near other optima reach no design. Without it, a
-            value without a design costs milliseconds, but only a search can tell that there is none
+            value without a design costs milliseconds, but only a search can show that there is none
 
         Raises
         ------

@@ -210,8 +210,8 @@ class Studio:
     def first(self, changes: Numbers, stop: Stop) -> dict[str, Any]:
         """The optimum with some numbers changed, at once; `solve` then evaluates its design.
 
-        If the steps near the session's optimum reach none, only `solve` can tell whether there is
-        one: the answer is then only that it has to be searched for.
+        If the steps near the session's optimum reach none, the answer only says that a search is
+        needed, which `solve` makes.
 
         Raises
         ------
@@ -432,7 +432,8 @@ class Studio:
         quantity = quantity_of(path, self.actuator.design)
         if quantity.dimension != "count":
             return moved.price(path)
-        value = float(get(moved.optimum.design, path))
+        value = get(moved.optimum.design, path)
+        assert isinstance(value, float | int)
         slopes, refused = list[float | None](), 0
         for step in (-1, 1):
             found = None
@@ -448,7 +449,7 @@ class Studio:
         if refused == len(slopes):
             raise UsageError(Diagnostic("cannot change alone", "edit the file", path=path))
         down, up = slopes
-        return Price(path, value, down, up, (value - 1, value + 1), (None, None))
+        return Price(path, float(value), down, up, (value - 1.0, value + 1.0), (None, None))
 
     def curve(
         self,

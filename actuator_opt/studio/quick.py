@@ -1,4 +1,4 @@
-"""What the page shows of an optimum before its design is evaluated: section, masses, limits."""
+"""Section, masses and limits of an optimum, before its design is evaluated."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from . import section
 
 
 def shown(bare: BareOptimum) -> dict[str, Any]:
-    """Data of an optimum that the page shows, without what only an evaluation knows."""
+    """Data of an optimum for the page, as far as they need no evaluation."""
     subject, v = bare.subject, bare.subject.values()
     design, g = subject.design, derive(v, subject.design)
     masses = _masses(subject)

@@ -62,7 +62,7 @@ class TradeOff:
 
     Raises
     ------
-    Unsolvable : no design is found
+    Unsolvable : the search reaches no design
     Dropped : `stop` became true
     """
 
