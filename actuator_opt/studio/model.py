@@ -166,9 +166,7 @@ class Studio:
         self.present = changed
         bare = None
         if self._session is not None:
-            bare = self._session.bare_optimum(self._relative(changed), stop=stop)
-        if stop():
-            raise Dropped
+            bare = self._session.bare_optimum(self._relative(changed), stop=_dropping(stop))
         if bare is None:
             return {"searching": True, "changes": changed}
         return {
@@ -244,9 +242,7 @@ class Studio:
             return self._last[1]
         if self._session is None:
             return self._first(changed, stop)
-        result = self._session.solve(self._relative(changed), stop=stop)
-        if stop():
-            raise Dropped
+        result = self._session.solve(self._relative(changed), stop=_dropping(stop))
         self._last = changed, result
         return result
 
@@ -382,11 +378,9 @@ class Studio:
             found = None
             try:
                 if quantity.lower <= value + step <= quantity.upper:
-                    found = moved.bare_optimum({path: value + step}, stop=stop)
+                    found = moved.bare_optimum({path: value + step}, stop=_dropping(stop))
             except InputError:  # contradicts other numbers
                 refused += 1
-            if stop():
-                raise Dropped
             change = None if found is None else found.objective - moved.optimum.objective_value
             slopes.append(None if change is None else step * change)
         if refused == len(slopes):
@@ -422,15 +416,10 @@ class Studio:
         """
         changed = self._si(changes)
         if best:
-            traced = self._traded(changed, best, stop).curve(
-                path, list(values), stop, search=search
-            )
-            if stop():
-                raise Dropped
-            return dict(traced)
-        curve = self._at(changed).curve(path, list(values), stop=stop, search=search)
-        if stop():
-            raise Dropped
+            trade = self._traded(changed, best, stop)
+            return dict(trade.curve(path, list(values), _dropping(stop), search=search))
+        moved = self._at(changed)
+        curve = moved.curve(path, list(values), stop=_dropping(stop), search=search)
         return {
             "values": curve.values,
             "objectives": curve.objectives,
@@ -516,6 +505,17 @@ class Studio:
 
 def _never() -> bool:
     return False
+
+
+def _dropping(stop: Stop) -> Stop:
+    """Raise `Dropped` once `stop` is true, so that no result of a stopped search is assembled."""
+
+    def check() -> bool:
+        if stop():
+            raise Dropped
+        return False
+
+    return check
 
 
 def _options(name: str, values: Any) -> list[str]:
