@@ -122,7 +122,7 @@ class Studio:
                 other._session = session(other.actuator, seed=self._seed)
         else:
             kept = {path: value for path, value in self._relative({}).items() if path in entries}
-            found = variant(self._session, {**kept, **entries}, stop=stop)
+            found = variant(self._session, {**kept, **entries}, stop=_dropping(stop))
             other._opening, other._session = found
         if stop():
             raise Dropped
@@ -133,7 +133,7 @@ class Studio:
         if self.searched or self._session is None:
             self.searched = True
             return
-        found = variant(self._session, {}, thorough=True, stop=stop)
+        found = variant(self._session, {}, thorough=True, stop=_dropping(stop))
         if stop():
             raise Dropped
         sign = -1.0 if _maximises(self._opening) else 1.0
@@ -223,9 +223,7 @@ class Studio:
         self.present = changed
         bare = None
         if self._session is not None:
-            bare = self._session.bare_optimum(self._relative(changed), stop=stop)
-        if stop():
-            raise Dropped
+            bare = self._session.bare_optimum(self._relative(changed), stop=_dropping(stop))
         if bare is None:
             return {"searching": True, "changes": changed}
         return {
@@ -301,9 +299,7 @@ class Studio:
             return self._last[1]
         if self._session is None:
             return self._first(changed, stop)
-        result = self._session.solve(self._relative(changed), stop=stop)
-        if stop():
-            raise Dropped
+        result = self._session.solve(self._relative(changed), stop=_dropping(stop))
         self._last = changed, result
         return result
 
@@ -439,11 +435,9 @@ class Studio:
             found = None
             try:
                 if quantity.lower <= value + step <= quantity.upper:
-                    found = moved.bare_optimum({path: value + step}, stop=stop)
+                    found = moved.bare_optimum({path: value + step}, stop=_dropping(stop))
             except InputError:  # contradicts other numbers
                 refused += 1
-            if stop():
-                raise Dropped
             change = None if found is None else found.objective - moved.optimum.objective_value
             slopes.append(None if change is None else step * change)
         if refused == len(slopes):
@@ -479,15 +473,10 @@ class Studio:
         """
         changed = self._si(changes)
         if best:
-            traced = self._traded(changed, best, stop).curve(
-                path, list(values), stop, search=search
-            )
-            if stop():
-                raise Dropped
-            return dict(traced)
-        curve = self._at(changed).curve(path, list(values), stop=stop, search=search)
-        if stop():
-            raise Dropped
+            trade = self._traded(changed, best, stop)
+            return dict(trade.curve(path, list(values), _dropping(stop), search=search))
+        moved = self._at(changed)
+        curve = moved.curve(path, list(values), stop=_dropping(stop), search=search)
         return {
             "values": curve.values,
             "objectives": curve.objectives,
@@ -591,6 +580,17 @@ def _changing(changes: Iterable[Change]) -> list[str]:
         for path, value in changes
         for word in (("--unset", path) if value is None else ("--set", f"{path}={value}"))
     ]
+
+
+def _dropping(stop: Stop) -> Stop:
+    """Raise `Dropped` once `stop` is true, so that no result of a stopped search is assembled."""
+
+    def check() -> bool:
+        if stop():
+            raise Dropped
+        return False
+
+    return check
 
 
 def _options(name: str, values: Any) -> list[str]:
