@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
-from actuator_opt.evaluation import evaluate
+from actuator_opt.evaluation import evaluate, kernel
 from actuator_opt.evaluation.kernel import duty_numbers
-from actuator_opt.optimisation import run
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.evaluator import Evaluator
 
@@ -72,8 +71,8 @@ def test_a_search_that_begins_with_few_samples_finds_the_same(
     """A long record: the search begins with some samples, and its optimum holds for all."""
     tight = actuator.changed({"requirements.duty_supply_share.max": 0.47})
     whole = ao.optimise(tight, prices=False)
-    monkeypatch.setattr(run, "MANY_SAMPLES", 100)
-    monkeypatch.setattr(run, "FEW_SAMPLES", 24)
+    monkeypatch.setattr(kernel, "MANY_SAMPLES", 100)
+    monkeypatch.setattr(kernel, "FEW_SAMPLES", 24)
     few = ao.optimise(tight, prices=False)
     assert few.objective_value == pytest.approx(whole.objective_value, rel=1e-8)
     assert few.kkt is not None

@@ -26,8 +26,13 @@ from .study import CycleStudy, DutyStudy, Lack, Remedy, Shortfall, study as of_m
 
 Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
-CHECKED = ("duty_supply_share", "duty_suction_ratio", "duty_stroke_margin", "duty_fatigue")
-"""Metrics of duty cycles that the check list limits."""
+CHECKED = {
+    "duty_supply_share": ("share",),
+    "duty_suction_ratio": ("pressure_a_min", "pressure_b_min"),
+    "duty_stroke_margin": ("position_min", "position_max"),
+    "duty_fatigue": ("damage",),
+}
+"""Metrics of duty cycles that the check list limits, and the results of the cycles they need."""
 LIFE = "the life"
 """Word for all cycles of a life."""
 STEPS, FINER = 8, 4
@@ -248,7 +253,8 @@ class _Model:
     def __init__(self, subject: PreparedDesign, limits: Mapping[str, tuple[Sense, float]]) -> None:
         self._subject, self._limits = subject, limits
         self._known = self._faults({})  # a search that found no design may leave contradictions
-        results = duty_results(subject, subject.values()).metrics
+        self._wanted = {result for metric in limits for result in CHECKED[metric]}
+        results = duty_results(subject, subject.values(), self._wanted).metrics
         self.damage = {
             place: float(np.ravel(x)[0]) for place, x in results.get("duty_fatigue", {}).items()
         }
@@ -256,7 +262,7 @@ class _Model:
 
     def _margins(self, varied: Mapping[str, Floats], count: int) -> dict[tuple[str, str], Floats]:
         """Least margins (designs,) by metric and cycle."""
-        results = duty_results(self._subject, self._subject.values(varied)).metrics
+        results = duty_results(self._subject, self._subject.values(varied), self._wanted).metrics
         margins: dict[tuple[str, str], Floats] = {}
         for metric, (sense, limit) in self._limits.items():
             for place, value in results.get(metric, {}).items():
