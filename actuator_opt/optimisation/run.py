@@ -220,7 +220,7 @@ def _searched(actuator: ActuatorProblem, fault: Fault | None, **settings: Any) -
         return _confirmed(actuator, **settings)
     few = build(subject, fault)
     first = _confirmed(few, **settings)
-    again = settings | {"starts": 1, "samples": 0}
+    again = settings | {"starts": 1, "samples": 0, "check": bool(first.warnings)}
     if settings["max_seconds"] is not None:
         again["max_seconds"] = max(settings["max_seconds"] - first.seconds, 0.0)
     if first.interrupted:

@@ -20,8 +20,6 @@ from .numbers import LIFE, STRESS, History, SamplePlan
 from .samples import NearSamples, SampleResults
 
 Rows = npt.NDArray[np.intp]
-MOST_KNOWN = 1000
-"""Orders of reversals whose pairs are kept."""
 _LOCAL = ("largest", "smallest", *STRESS)
 """Inputs of the damage of a counted cycle: the ends of the load, and the numbers of the part."""
 
@@ -83,7 +81,6 @@ class CycleFatigue:
     ) -> None:
         self.cycles, self._rows, self._outputs = tuple(cycles), rows, tuple(outputs)
         self.outputs = [x for x in outputs if x.startswith("pulse_") or x == "position"]
-        self._known: dict[bytes, tuple[Array, Array]] = {}
         parts = sorted(enumerate(plan.parts if cycles else ()), key=lambda pair: pair[1].bolted)
         self._loads: tuple[History, ...] = tuple(dict.fromkeys(part.load for _, part in parts))
         self._load = np.array([self._loads.index(part.load) for _, part in parts], dtype=np.intp)
@@ -114,7 +111,7 @@ class CycleFatigue:
             else:
                 outputs[k] = self._outputs.index(f"pulse_{load}")
         levels = track.values[np.arange(samples)[:, None], outputs, np.arange(designs)]
-        pairs = self._pairs(levels.transpose(1, 0, 2).reshape(samples, -1))
+        pairs = rainflow.repeating_cycles(history=levels.transpose(1, 0, 2).reshape(samples, -1))
 
         def by_load(values: Array) -> Array:
             return values.reshape(len(values), len(self._loads), designs).transpose(1, 0, 2)
@@ -205,33 +202,6 @@ class CycleFatigue:
         low = np.take_along_axis(low, np.argmin(low[..., :1], axis=1)[:, None], axis=1)
         return _Ends(high, low, np.broadcast_to(starts, high.shape))
 
-    def _pairs(self, levels: npt.NDArray[np.float64]) -> rainflow.Cycles:
-        """Rainflow cycles of histories (samples, designs).
-
-        The pairs depend on the order of the reversals alone, and are kept for equal orders.
-        """
-        turns = _turns(levels)
-        found = []
-        for k in range(levels.shape[1]):
-            at = np.flatnonzero(turns[:, k])
-            values = levels[at, k]
-            order = np.argsort(values, kind="stable")
-            ties = np.diff(values[order]) == 0
-            key = at.tobytes() + order.tobytes() + ties.tobytes()
-            if key not in self._known or np.isnan(values).any():
-                if len(self._known) >= MOST_KNOWN:
-                    self._known.clear()
-                pairs = rainflow.repeating_cycles(history=values)
-                self._known[key] = (at[pairs.largest], at[pairs.smallest])
-            found.append(self._known[key])
-        rows = max((len(pair[0]) for pair in found), default=0)
-        index = np.zeros((2, rows, len(found)), dtype=np.intp)
-        count = np.zeros((rows, len(found)))
-        for k, pair in enumerate(found):
-            index[:, : len(pair[0]), k] = pair
-            count[: len(pair[0]), k] = 1.0
-        return rainflow.Cycles(index[0], index[1], count)
-
     def _damage(self, numbers: Array, ends: _Ends) -> Array:
         """Miner's sums of all parts with slopes (parts, designs, 1 + directions)."""
         largest, smallest, count = (x[..., 0][self._load] for x in ends)
@@ -312,10 +282,3 @@ def _damage_of(points: Array) -> Array:
     )
     damage: Array = (1 / cycles)[None]
     return damage
-
-
-def _turns(values: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-    """Whether samples are local extremes of repeating histories (samples, designs)."""
-    before, after = np.roll(values, 1, axis=0), np.roll(values, -1, axis=0)
-    turns: npt.NDArray[np.bool_] = ~((values - before) * (after - values) > 0)
-    return turns
