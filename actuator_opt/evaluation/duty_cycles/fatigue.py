@@ -210,52 +210,52 @@ class CycleFatigue:
             slack = self._tension[:, None, None] & (x < 0)
             x[slack] = 0.0
             kept.append(~slack)
-        each, slopes, by_number = self._each(largest, smallest, numbers[..., 0])
+        steep = numbers.shape[2] > 1
+        metal = self._metal_damage(largest, smallest, numbers[..., 0], steep=steep)
+        bolts = slice(self._metal, None)
+        # the life of a bolt falls with the third power of the load (`endurance.bolt_cycles`)
+        pulse = (largest - smallest)[bolts]
+        life = numbers[self._life, :, 0][:, None]
+        cube = pulse**3 / life
+        each = np.concatenate([metal[..., 0], cube])
         result = np.zeros((len(self._load), *numbers.shape[1:]))
         result[..., 0] = (count * each).sum(axis=1)
-        if numbers.shape[2] == 1:
+        if not steep:
             return result
-        factors = [each, *(count * slope * some for slope, some in zip(slopes, kept, strict=True))]
+        square = 3 * pulse**2 / life
+        by_end = (
+            np.concatenate([metal[..., 1], square]),
+            np.concatenate([metal[..., 2], -square]),
+        )
+        factors = [each, *(count * slope * some for slope, some in zip(by_end, kept, strict=True))]
         for load in range(len(self._loads)):
             parts = np.flatnonzero(self._load == load)
             steps = (end[load, :, :, 1:] for end in (ends.times, ends.largest, ends.smallest))
             result[parts, :, 1:] = sum(
                 _summed(factor[parts], step) for factor, step in zip(factors, steps, strict=True)
             )
-        for rows, some, slope in by_number:
+        by_number = [
+            (row, slice(self._metal), metal[..., 3 + k]) for k, row in enumerate(self._stress)
+        ]
+        for rows, some, slope in [*by_number, (self._life, bolts, -cube / life)]:
             factor = (count[some] * slope).sum(axis=1)[..., None]
             result[some, :, 1:] += factor * numbers[rows, :, 1:]
         return result
 
-    def _each(
-        self, largest: Array, smallest: Array, values: Array
-    ) -> tuple[Array, tuple[Array, Array], list[tuple[Rows, slice, Array]]]:
-        """Damage of every counted cycle (parts, cycles, designs), and its slopes.
+    def _metal_damage(
+        self, largest: Array, smallest: Array, values: Array, *, steep: bool
+    ) -> Array:
+        """Damage of every counted cycle of metal parts (parts, cycles, designs, 1 + inputs).
 
-        The slopes are by both ends of the cycle, and by the numbers of the parts: rows of the
-        numbers, parts, slope.
+        Behind it, if `steep`, are its slopes by the inputs `_LOCAL`.
         """
-        metal, bolts = slice(self._metal), slice(self._metal, None)
-        points = np.empty((*largest[metal].shape, len(_LOCAL)))
-        points[..., 0], points[..., 1] = largest[metal], smallest[metal]
+        shape = largest[: self._metal].shape
+        points = np.empty((*shape, len(_LOCAL)))
+        points[..., 0], points[..., 1] = largest[: self._metal], smallest[: self._metal]
         points[..., 2:] = values[self._stress].transpose(1, 2, 0)[:, None]
-        identity = np.eye(len(_LOCAL))[None]
-        found = self._damage_of.duals(np.empty((1, 0)), points.reshape(-1, len(_LOCAL)), identity)
-        found = found[:, 0].reshape(*points.shape[:-1], 1 + len(_LOCAL))
-        # the life of a bolt falls with the third power of the load (`endurance.bolt_cycles`)
-        pulse = (largest - smallest)[bolts]
-        life = values[self._life][:, None]
-        cube, square = pulse**3 / life, 3 * pulse**2 / life
-        by_number = [(rows, metal, found[..., 3 + k]) for k, rows in enumerate(self._stress)]
-        by_number.append((self._life, bolts, -cube / life))
-        return (
-            np.concatenate([found[..., 0], cube]),
-            (
-                np.concatenate([found[..., 1], square]),
-                np.concatenate([found[..., 2], -square]),
-            ),
-            by_number,
-        )
+        seeds = np.eye(len(_LOCAL))[None] if steep else np.zeros((1, len(_LOCAL), 0))
+        found = self._damage_of.duals(np.empty((1, 0)), points.reshape(-1, len(_LOCAL)), seeds)
+        return found.reshape(*shape, -1)
 
 
 def _summed(factors: Array, steps: Array) -> Array:
