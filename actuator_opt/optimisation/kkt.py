@@ -595,6 +595,8 @@ def quadratic_programme(
         violated = missed > 0
         step = np.linalg.lstsq(rows[violated], missed[violated], rcond=1e-8)[0]
         return np.asarray(step, dtype=float), prices
-    nearest = -residual[:-1] / residual[-1]
-    prices[useful] = weights / -residual[-1] / length[useful]
+    held = weights > 0  # solved again: the residual is inexact if the curvatures differ widely
+    nearest = np.linalg.lstsq(scaled_rows[held], needed[held], rcond=1e-10)[0]
+    weights[held] = np.linalg.lstsq(scaled_rows[held].T, nearest, rcond=1e-10)[0]
+    prices[useful] = weights / length[useful]
     return np.linalg.solve(factor.T, nearest - scaled_slope), prices
