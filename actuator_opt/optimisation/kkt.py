@@ -399,12 +399,12 @@ def polish(
         pass
     visited.sort(key=lambda s: (max(s.point.violation - FEASIBLE, 0.0), s.measure))
     for candidate in visited:
-        if _acceptable(evaluator, initial, candidate):
+        if acceptable(evaluator, initial, candidate):
             return candidate.point
     return start
 
 
-def _acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: NewtonState) -> bool:
+def acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: NewtonState) -> bool:
     """Whether a point is at least as feasible as the start, and its objective not higher.
 
     If the start violates limits, the objective may rise by twice the cost of removing this

@@ -257,14 +257,12 @@ def _default_path(search: Descents, points: list[Point]) -> None:
                 search.restore(search.optima[-1].point, start=point)
     if search.least_infeasible and not search.feasible:
         return
-    best = search.best()
-    if best is not None and best.point.violation <= MET and not search.succeeded:
-        search.descend(best.point, "LD_SLSQP", linear=False, max_evaluations=LOCAL_EVALUATIONS)
     failed = [
         point
         for point in failed[:2]
         if not search.descend(point, "LD_SLSQP", linear=True, max_evaluations=LOCAL_EVALUATIONS)
     ]
+    search.complete()
     if search.succeeded or not search.feasible:
         return
     for point in failed:

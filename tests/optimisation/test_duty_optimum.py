@@ -78,6 +78,8 @@ def test_a_search_that_begins_with_few_samples_finds_the_same(
     assert few.kkt is not None
     assert few.kkt.residual <= 1e-6
     assert len(few.starts) == len(whole.starts)
+    yields = [x.best_evaluation.yield_estimate.value for x in (few, whole)]
+    assert yields[0] == pytest.approx(yields[1], abs=0.05)  # of 500 draws, also of few samples
     duty = few.evaluation.duty
     assert duty is not None
     assert duty.cycles[0].traces["share"].max() == pytest.approx(0.47, rel=1e-6)
