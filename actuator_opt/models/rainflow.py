@@ -93,10 +93,15 @@ def _pairs(columns: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
     neighbours; they leave the row. In the end only the least values between the largest are left.
     """
     size, count = columns.shape
-    sample = (np.argmax(columns, axis=0) + np.arange(size + 1)[:, None]) % size
-    values = columns[sample, np.arange(count)].T.ravel()
-    sample = sample.T.ravel()
-    column = np.repeat(np.arange(count), size + 1)
+    values = columns.T
+    up, down = values < np.roll(values, -1, axis=1), values > np.roll(values, -1, axis=1)
+    column, sample = np.nonzero(~((up & np.roll(up, 1, axis=1)) | (down & np.roll(down, 1, axis=1))))
+    start = np.argmax(values, axis=1)
+    turn = np.append((sample - start[column]) % size, np.full(count, size))
+    column, sample = np.append(column, np.arange(count)), np.append(sample, start)
+    order = np.argsort(column * (size + 1) + turn, kind="stable")
+    column, sample = column[order], sample[order]
+    values = values[column, sample]
     largest = values == columns.max(axis=0, initial=-np.inf)[column]
     row = np.arange(len(values))
     row = row[np.append((values[1:] != values[:-1]) | (column[1:] != column[:-1]), True)]
