@@ -69,12 +69,13 @@ def repeating_cycles(*, history: Array | Sequence[Array]) -> Cycles:
     (values,) = histories(history)
     numbers = np.asarray(real(values))
     columns = numbers.reshape(len(numbers), -1)
-    unknown = np.isnan(columns)
-    lost = np.flatnonzero(unknown.any(axis=0))
-    if len(lost):
-        columns = np.where(unknown.any(axis=0), 0.0, columns)
-    parts = [np.stack([np.argmax(unknown[:, lost], axis=0)] * 2 + [lost]), _pairs(columns)]
-    pairs = np.concatenate(parts, axis=1)
+    lost = np.flatnonzero(np.isnan(columns).any(axis=0))
+    if not len(lost):
+        pairs = _pairs(columns)
+    else:
+        first = np.argmax(np.isnan(columns[:, lost]), axis=0)
+        known = np.where(np.isnan(columns).any(axis=0), 0.0, columns)  # constant: without cycles
+        pairs = np.concatenate([_pairs(known), np.stack([first, first, lost])], axis=1)
     pairs = pairs[:, np.argsort(pairs[2], kind="stable")]
     counts = np.bincount(pairs[2], minlength=columns.shape[1])
     row = np.arange(pairs.shape[1]) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -94,8 +95,10 @@ def _pairs(columns: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
     """
     size, count = columns.shape
     values = columns.T
-    up, down = values < np.roll(values, -1, axis=1), values > np.roll(values, -1, axis=1)
-    column, sample = np.nonzero(~((up & np.roll(up, 1, axis=1)) | (down & np.roll(down, 1, axis=1))))
+    closed = np.concatenate([values[:, -1:], values, values[:, :1]], axis=1)
+    up, down = closed[:, 1:] > closed[:, :-1], closed[:, 1:] < closed[:, :-1]
+    straight = (up[:, 1:] & up[:, :-1]) | (down[:, 1:] & down[:, :-1])
+    column, sample = np.nonzero(~straight)
     start = np.argmax(values, axis=1)
     turn = np.append((sample - start[column]) % size, np.full(count, size))
     column, sample = np.append(column, np.arange(count)), np.append(sample, start)
@@ -109,8 +112,8 @@ def _pairs(columns: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
     row = row[largest[row] | (np.append(rises, True) != np.append(False, rises))]
     found = []
     while True:
-        width = np.abs(np.diff(values[row]))
-        free = ~largest[row]
+        level, free = values[row], ~largest[row]
+        width = np.abs(level[1:] - level[:-1])
         inner = free[:-1] & free[1:]
         inner[1:] &= width[1:] <= width[:-1]
         inner[:-1] &= width[:-1] <= width[1:]

@@ -15,8 +15,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...base.numeric import STEP, Array, sorted_unique
+from ...base.numeric import STEP, Array, real, sorted_unique, where
 from ...base.quantities import Sense
+from ...base.symbolic.recorded import RecordedFunction
 from ...design.cycle_record import CycleRecord
 from ...models import heat_transfer, supply_sizing
 from ..values import Values
@@ -387,23 +388,42 @@ class _Cycle:
         All designs turn at the same samples: a lever arm does not change its sign. The last stroke
         of a closed cycle may go on in its first.
         """
-        u = dict(zip(self.model.names, stepped(values, seeds), strict=True))
         turns = np.broadcast_to(self._turns[:, None], (len(self._turns), values.shape[1]))
-        x = near.at(self.model.outputs.index("position"), turns)
-        position = (complexed(x) if seeds.shape[2] else x[..., 0]).reshape(len(turns), -1)
+        position = near.at(self.model.outputs.index("position"), turns)
         strokes = position[1:] - position[:-1]
-        if self.record.closed and strokes[0, 0].real * strokes[-1, 0].real > 0:
+        if self.record.closed and strokes[0, 0, 0] * strokes[-1, 0, 0] > 0:
             strokes = np.concatenate([strokes[:1] + strokes[-1:], strokes[1:-1]])
-        duration = (self.record.time[-1] - self.record.time[0]) * u["time_scale"]
-        filling = np.stack([strokes, -strokes])
-        fresh = heat_transfer.exchanged_volume(
-            piston_area=np.stack([u["area_a"], u["area_b"]])[:, None],
-            travel=np.where(filling.real > 0, filling, 0.0),
-            line_volume=np.stack(
-                np.broadcast_arrays(u["line_volume_a"], u["line_volume_b"], duration)[:2]
-            )[:, None],
-        )
-        return duals_of(fresh.sum(axis=1) / duration, values.shape[1])
+        numbers = np.concatenate([values[:, :, None], seeds], axis=2)
+        shape = (len(EXCHANGE), values.shape[1], len(strokes), len(_STROKE), strokes.shape[2])
+        points = np.empty(shape)  # chambers, designs, strokes, inputs, 1 + directions
+        points[:, :, :, 0] = np.stack([strokes, -strokes]).transpose(0, 2, 1, 3)
+        for k, name in enumerate(("area", "line_volume")):
+            rows = [self.model.names.index(f"{name}_{chamber}") for chamber in "ab"]
+            points[:, :, :, 1 + k] = numbers[rows][:, :, None]
+        points[:, :, :, 3] = numbers[self.model.names.index("time_scale"), :, None]
+        points[:, :, :, 3] *= self.record.time[-1] - self.record.time[0]
+        flat = points.reshape(-1, *shape[3:])
+        groups = shape[0] * shape[1]
+        flows = _EXCHANGE_OF.duals(np.empty((1, 0)), flat[:, :, 0], flat[:, :, 1:], groups)
+        return flows.reshape(*shape[:2], shape[4])
+
+
+_STROKE = ("travel", "area", "line_volume", "duration")
+"""Inputs of the flow that a stroke exchanges; the travel is negative away from the chamber."""
+
+
+def _exchange_of(points: Array) -> Array:
+    """Flow of fresh oil by single strokes (1, strokes), from numbers (`_STROKE`, strokes)."""
+    travel, area, line_volume, duration = points
+    filling = where(real(travel) > 0, travel, 0.0)
+    volume = heat_transfer.exchanged_volume(
+        piston_area=area, travel=filling, line_volume=line_volume
+    )
+    flow: Array = (volume / duration)[None]
+    return flow
+
+
+_EXCHANGE_OF = RecordedFunction(_exchange_of, _STROKE, np.array([1.0, 1.0, 0.5, 1.0]))
 
 
 Extreme = tuple[tuple[str, str], int, float]
