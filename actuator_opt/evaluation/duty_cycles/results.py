@@ -287,6 +287,19 @@ class _Cycle:
             for (name, label), _, _ in extremes:
                 self.keys += [(name, f"{label}|{place}" if label else place) for place in ranked]
             self._sizes.append(len(extremes) * len(ranked))
+        self._needs = self._outputs_needed()
+
+    def _outputs_needed(self) -> npt.NDArray[np.bool_]:
+        """Whether each result needs each output at all samples (keys, outputs)."""
+        outputs, ends = self.model.outputs, np.cumsum(self._sizes)
+        needs = np.zeros((len(self.keys), len(outputs)), dtype=bool)
+        needs[FLOW_SUMS, outputs.index("flow")] = True
+        needs[ends[0] : ends[1], outputs.index("position")] = True
+        for (extremes, _), first, last in zip(self._blocks, ends[1:], ends[2:], strict=False):
+            rows = np.arange(first, last)
+            places = [output for _, output, _ in extremes]
+            needs[rows, np.repeat(places, len(rows) // len(places))] = True
+        return needs
 
     @property
     def _blocks(self) -> tuple[tuple[list[Extreme], TimeWindows], ...]:
@@ -294,14 +307,8 @@ class _Cycle:
 
     def needed(self, wanted: Array, more: Sequence[str]) -> Array:
         """Whether each output is needed for the wanted results, or among `more` (outputs,)."""
-        _, exchange, *picked = np.split(wanted, np.cumsum(self._sizes[:-1]))
-        outputs = self.model.outputs
-        needed = np.array([name in more for name in outputs])
-        needed[outputs.index("position")] |= bool(exchange.any())
-        needed[outputs.index("flow")] |= bool(wanted[FLOW_SUMS].any())
-        for (extremes, _), some in zip(self._blocks, picked, strict=True):
-            kept = np.flatnonzero(some.reshape(len(extremes), -1).any(axis=1))
-            needed[[extremes[k][1] for k in kept]] = True
+        needed = np.array([name in more for name in self.model.outputs])
+        needed |= self._needs[wanted].any(axis=0)
         return needed
 
     def samples(self, values: Array, wanted: Array | None = None) -> SampleResults:
