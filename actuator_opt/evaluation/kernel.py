@@ -7,7 +7,7 @@ computes oil damping, leakage, flow and line losses.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Set as AbstractSet
+from collections.abc import Callable, Container, Mapping, Set as AbstractSet
 from dataclasses import field, replace
 
 import numpy as np
@@ -532,11 +532,16 @@ def duty_numbers(subject: PreparedDesign, v: Values) -> tuple[CycleModels, Array
     return cycle_models(subject, plan, numbers), stacked_numbers(numbers)
 
 
-def duty_results(subject: PreparedDesign, v: Values) -> MetricArrays:
-    """Metrics of the duty cycles only, for all designs in `v`; other models run without search."""
+def duty_results(
+    subject: PreparedDesign, v: Values, wanted: Container[str] | None = None
+) -> MetricArrays:
+    """Metrics of the duty cycles only, for all designs in `v`; other models run without search.
+
+    Metrics that need more than the `wanted` results of the cycles (None: all) are meaningless.
+    """
     out = MetricArrays()
     with np.errstate(all="ignore"):
-        _duty(subject, v, statics(subject, v, out), out)
+        _duty(subject, v, statics(subject, v, out), out, wanted)
     return out
 
 
@@ -573,8 +578,31 @@ def cycle_models(subject: PreparedDesign, plan: SamplePlan, numbers: Numbers) ->
     return subject.cycles[key]
 
 
-def _duty(subject: PreparedDesign, v: Values, s: Statics, out: MetricArrays) -> None:
-    """Compute the metrics of duty cycles, by their models or from results among the values."""
+MANY_SAMPLES = 5000
+"""Samples of all duty cycles, above which studies of many designs use fewer of them (our choice).
+With 100 cycles of 1000 samples, 2048 designs alone would take minutes."""
+FEW_SAMPLES = 200
+"""Samples of each cycle that they then use (our choice)."""
+
+
+def with_few_samples(subject: PreparedDesign) -> PreparedDesign:
+    """The design with `FEW_SAMPLES` of each duty cycle, if all cycles have many samples."""
+    duty = subject.design.duty
+    samples = 0 if duty is None else sum(duty.record(cycle).time.size for cycle in duty.cycles)
+    return subject if samples <= MANY_SAMPLES else replace(subject, most_samples=FEW_SAMPLES)
+
+
+def _duty(
+    subject: PreparedDesign,
+    v: Values,
+    s: Statics,
+    out: MetricArrays,
+    wanted: Container[str] | None = None,
+) -> None:
+    """Compute the metrics of duty cycles, by their models or from results among the values.
+
+    Results of the cycles whose names are not `wanted` may be 0; None: all are computed.
+    """
     if subject.design.duty is None:
         duty_metrics.skip(out)
         return
@@ -582,7 +610,11 @@ def _duty(subject: PreparedDesign, v: Values, s: Statics, out: MetricArrays) -> 
     if not results:
         plan, numbers = sample_numbers(subject, v, s)
         models = cycle_models(subject, plan, numbers)
-        results = dict(zip(models.places, models(stacked_numbers(numbers)), strict=True))
+        some = None
+        if wanted is not None:
+            some = np.array([place.name in wanted for place in models.places])
+        rows = models(stacked_numbers(numbers), wanted=some)
+        results = dict(zip(models.places, rows, strict=True))
     duty_metrics.compute(
         v,
         subject.design,

@@ -11,11 +11,12 @@ Fatigue life and damage of the cycles are in `endurance`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from ..base.numeric import Array, histories, real, sorted_unique
+from ..base.numeric import Array, histories, real
 
 
 class Cycles(NamedTuple):
@@ -68,35 +69,64 @@ def repeating_cycles(*, history: Array | Sequence[Array]) -> Cycles:
     (values,) = histories(history)
     numbers = np.asarray(real(values))
     columns = numbers.reshape(len(numbers), -1)
-    pairs = [_pairs(columns[:, k]) for k in range(columns.shape[1])]
-    rows = max(map(len, pairs), default=0)
-    index = np.zeros((2, rows, len(pairs)), dtype=np.int64)
-    count = np.zeros((rows, len(pairs)))
-    for k, found in enumerate(pairs):
-        index[:, : len(found), k] = np.array(found, dtype=np.int64).reshape(-1, 2).T
-        count[: len(found), k] = 1.0
-    shape = (rows, *numbers.shape[1:])
+    lost = np.flatnonzero(np.isnan(columns).any(axis=0))
+    if not len(lost):
+        pairs = _pairs(columns)
+    else:
+        first = np.argmax(np.isnan(columns[:, lost]), axis=0)
+        known = np.where(np.isnan(columns).any(axis=0), 0.0, columns)  # constant: without cycles
+        pairs = np.concatenate([_pairs(known), np.stack([first, first, lost])], axis=1)
+    pairs = pairs[:, np.argsort(pairs[2], kind="stable")]
+    counts = np.bincount(pairs[2], minlength=columns.shape[1])
+    row = np.arange(pairs.shape[1]) - np.repeat(np.cumsum(counts) - counts, counts)
+    index = np.zeros((2, int(counts.max(initial=0)), len(counts)), dtype=np.intp)
+    index[:, row, pairs[2]] = pairs[:2]
+    count = (np.arange(index.shape[1])[:, None] < counts).astype(float)
+    shape = (index.shape[1], *numbers.shape[1:])
     return Cycles(index[0].reshape(shape), index[1].reshape(shape), count.reshape(shape))
 
 
-def _pairs(history: Any) -> list[tuple[int, int]]:
-    """Samples of the largest and the smallest value of every cycle of a repeating history."""
-    import rainflow
+def _pairs(columns: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
+    """Samples of the largest and the smallest value of every cycle, and its column (3, cycles).
 
-    unknown = np.isnan(history)
-    if unknown.any():
-        sample = int(np.argmax(unknown))
-        return [(sample, sample)]
-    # Ranks instead of values: products of small differences would underflow.
-    ranks = np.searchsorted(sorted_unique(history), history)
-    size, start = len(ranks), int(np.argmax(ranks))
-    if ranks.min() == ranks.max():
-        return []
-    rotated = np.append(np.roll(ranks, -start), ranks[start]).tolist()
-    closed: list[tuple[int, int]] = []
-    halves: list[tuple[int, int]] = []
-    for _, _, count, first, second in rainflow.extract_cycles(rotated):
-        (closed if count == 1.0 else halves).append((first, second))
-    # From the largest value down and up again: the halves are in pairs, the first leads down.
-    samples = ((i, k) if rotated[i] > rotated[k] else (k, i) for i, k in [*closed, *halves[::2]])
-    return [((i + start) % size, (k + start) % size) for i, k in samples]
+    All histories are in one row, each from its largest value to its largest value. Of four
+    successive reversals the inner two are a cycle if their range is not above either of its
+    neighbours; they leave the row. In the end only the least values between the largest are left.
+    """
+    size, count = columns.shape
+    values = columns.T
+    closed = np.concatenate([values[:, -1:], values, values[:, :1]], axis=1)
+    up, down = closed[:, 1:] > closed[:, :-1], closed[:, 1:] < closed[:, :-1]
+    straight = (up[:, 1:] & up[:, :-1]) | (down[:, 1:] & down[:, :-1])
+    column, sample = np.nonzero(~straight)
+    start = np.argmax(values, axis=1)
+    turn = np.append((sample - start[column]) % size, np.full(count, size))
+    column, sample = np.append(column, np.arange(count)), np.append(sample, start)
+    order = np.argsort(column * (size + 1) + turn, kind="stable")
+    column, sample = column[order], sample[order]
+    values = values[column, sample]
+    largest = values == columns.max(axis=0, initial=-np.inf)[column]
+    row = np.arange(len(values))
+    row = row[np.append((values[1:] != values[:-1]) | (column[1:] != column[:-1]), True)]
+    rises = values[row[1:]] > values[row[:-1]]
+    row = row[largest[row] | (np.append(rises, True) != np.append(False, rises))]
+    found = []
+    while True:
+        level, free = values[row], ~largest[row]
+        width = np.abs(level[1:] - level[:-1])
+        inner = free[:-1] & free[1:]
+        inner[1:] &= width[1:] <= width[:-1]
+        inner[:-1] &= width[:-1] <= width[1:]
+        if not inner.any():
+            break
+        place = np.arange(len(inner))  # of neighbours that share a reversal, every second one
+        first = np.maximum.accumulate(np.where(inner, -1, place))
+        at = place[inner & ((place - first) % 2 == 1)]
+        found.append(np.stack([row[at], row[at + 1]]))
+        kept = np.ones(len(row), dtype=bool)
+        kept[at] = kept[at + 1] = False
+        row = row[kept]
+    low = np.flatnonzero(~largest[row])
+    ends = np.concatenate([*found, np.stack([row[low - 1], row[low]])], axis=1)
+    ends = np.where(values[ends[0]] > values[ends[1]], ends, ends[::-1])
+    return np.concatenate([sample[ends], column[ends[:1]]])

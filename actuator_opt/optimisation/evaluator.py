@@ -287,24 +287,28 @@ class Evaluator:
         """Hessian (nf, nf) of weights @ rows; only `columns` are computed, the others are zero."""
         n = self.space.size
         result = np.zeros((n, n))
-        if len(columns) == 0:
-            return result
+        part = self.hessian_products(point, weights, np.eye(n)[:, columns])[columns]
+        result[np.ix_(columns, columns)] = (part + part.T) / 2
+        return result
+
+    def hessian_products(self, point: Point, weights: Vector, directions: Vector) -> Vector:
+        """Products (nf, d) of the Hessian of weights @ rows with directions (nf, d) of length 1."""
+        count = directions.shape[1]
+        if not count:
+            return np.zeros_like(directions)
         inexact = self.difference_rows.any() or not self.complex_works
         step = 1e-3 if inexact else HESSIAN_STEP
-        moves = step * np.eye(n)[:, columns]
-        z = point.z[:, None]
+        moves, z = step * directions, point.z[:, None]
         active = np.flatnonzero(weights)
         slopes = self.jacobians(np.concatenate([z + moves, z - moves], axis=1), inside=False)
         slopes = np.tensordot(weights[active], slopes[active], axes=1)
-        above, below = slopes[: len(columns)], slopes[len(columns) :]
+        above, below = slopes[:count], slopes[count:]
         if not np.isfinite(slopes).all():  # undefined on one side: one-sided difference, or 0
             middle = weights @ self.jacobian(point)
             above = np.where(np.isfinite(above), above, 2 * middle - below)
             below = np.where(np.isfinite(below), below, 2 * middle - above)
             above, below = np.nan_to_num(above), np.nan_to_num(below)
-        part = ((above - below) / (2 * step))[:, columns]
-        result[np.ix_(columns, columns)] = (part + part.T) / 2
-        return result
+        return np.asarray((above - below).T / (2 * step))
 
     def check_gradients(self, point: Point) -> tuple[str, ...]:
         """Compare the complex step with finite differences; return warnings.

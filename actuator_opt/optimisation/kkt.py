@@ -322,9 +322,9 @@ def _curvature(
     if basis.shape[1] == 0:
         return Curvature.VERTEX
     weights = lagrangian_weights(constraints, equalities)
-    hessian = evaluator.hessian(point, weights, np.arange(size))
-    values = np.linalg.eigvalsh(basis.T @ hessian @ basis)
-    room = 1e-6 * max(float(np.abs(hessian).max()), 1e-3 * abs(point.objective), 1e-300)
+    products = evaluator.hessian_products(point, weights, basis)
+    values = np.linalg.eigvalsh((basis.T @ products + products.T @ basis) / 2)
+    room = 1e-6 * max(float(np.abs(products).max()), 1e-3 * abs(point.objective), 1e-300)
     if values[0] < -room:
         return Curvature.NEGATIVE
     return Curvature.POSITIVE if values[0] > room else Curvature.FLAT
@@ -335,6 +335,10 @@ DAMPING = 1e3
 optimum."""
 FEASIBLE = 1e-9
 """Violation up to which a point from Newton steps counts as exactly feasible."""
+SIGNIFICANT = 1e-6
+"""Multipliers above this share of the objective's slope count in a Newton step."""
+REACHED = 1e-8
+"""A limit is reached if its margin is at most this."""
 RADIUS = 0.5
 """Longest step in each solver coordinate (a factor of 1.65 in a logarithmic variable)."""
 
@@ -349,6 +353,12 @@ class NewtonState:
     equality_multipliers: Vector
     measure: float
     scale: float
+
+    def weights(self, constraints: int) -> Vector:
+        """Factors of the rows in the Lagrangian, see `lagrangian_weights`."""
+        factors = np.zeros(constraints)
+        factors[self.active.constraint] = self.multipliers[: len(self.active.constraint)]
+        return lagrangian_weights(factors, self.equality_multipliers)
 
 
 def state_at(evaluator: Evaluator, point: Point) -> NewtonState:
@@ -389,12 +399,12 @@ def polish(
         pass
     visited.sort(key=lambda s: (max(s.point.violation - FEASIBLE, 0.0), s.measure))
     for candidate in visited:
-        if _acceptable(evaluator, initial, candidate):
+        if acceptable(evaluator, initial, candidate):
             return candidate.point
     return start
 
 
-def _acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: NewtonState) -> bool:
+def acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: NewtonState) -> bool:
     """Whether a point is at least as feasible as the start, and its objective not higher.
 
     If the start violates limits, the objective may rise by twice the cost of removing this
@@ -418,7 +428,7 @@ def _advance(evaluator: Evaluator, state: NewtonState) -> NewtonState | None:
         evaluator,
         point,
         state.scale,
-        convex_hessian(evaluator, state),
+        _hessian_of_step(evaluator, state),
         state.equality_multipliers,
     )
     longest = float(np.abs(step).max(initial=0.0))
@@ -478,22 +488,69 @@ def quadratic_step(
     return shift + basis @ inner, 2 * highest + 1.0
 
 
+def _hessian_of_step(evaluator: Evaluator, state: NewtonState) -> Vector:
+    """Scaled convex Hessian for a Newton step.
+
+    Where every limit with a multiplier is reached, only the directions along these limits count,
+    which are few; elsewhere the whole Hessian is computed.
+    """
+    m, active = evaluator.constraint_count, state.active
+    significant = state.multipliers > SIGNIFICANT * state.scale
+    if np.any(np.abs(active.margins[significant]) > REACHED):
+        return convex_hessian(evaluator, state)
+    equalities = evaluator.jacobian(state.point)[1 + m :]
+    rows = np.concatenate([active.gradients[significant], equalities])
+    free = null_space(rows, evaluator.space.size)
+    products = evaluator.hessian_products(state.point, state.weights(m), free) / state.scale
+    largest = float(state.multipliers.max(initial=0.0)) / state.scale
+    return convex_matrix(free, products, largest)
+
+
+FLATTEST = 1e-10
+"""Least ratio of smallest to largest curvature; below it, mixed second derivatives are dropped."""
+LEAST = 1e-6
+"""Least curvature, relative to the largest multiplier."""
+
+
+def convex_matrix(z: Vector, products: Vector, largest: float) -> Vector:
+    """A positive definite matrix (nf, nf) whose products with the vectors z are `products` (nf, d).
+
+    The columns of z (nf, d) are orthonormal; `largest` is the largest multiplier, which scales the
+    least curvature.
+    """
+    size = len(z)
+    if z.shape[1] == 0:
+        return np.eye(size)
+    values, vectors = np.linalg.eigh(z.T @ products + products.T @ z)
+    values = np.maximum(np.abs(values) / 2, LEAST * max(largest, 1e-3))
+    inner = (vectors * values) @ vectors.T
+    across = products - z @ (z.T @ products)
+    complement = np.eye(size) - z @ z.T
+    crossed = across @ np.linalg.solve(inner, across.T)
+    stiffness = 1.0 + float(np.linalg.norm(crossed, 2))
+    matrix = np.asarray(z @ inner @ z.T + across @ z.T + z @ across.T + stiffness * complement)
+    curvatures = np.linalg.eigvalsh(matrix)
+    return (
+        matrix
+        if curvatures[0] > FLATTEST * curvatures[-1]
+        else np.asarray(z @ inner @ z.T + complement)
+    )
+
+
 def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
     """Scaled Hessian of the Lagrangian, made positive definite with little effect on the step.
 
     Multiples of the active gradients' outer products are added, which keeps the solution on the
     active limits. If they are not enough, a negative curvature is replaced by its magnitude.
     """
-    m, active = evaluator.constraint_count, state.active
-    constraint_multipliers = np.zeros(m)
-    constraint_multipliers[active.constraint] = state.multipliers[: len(active.constraint)]
-    significant = state.multipliers > 1e-6 * state.scale
+    active = state.active
+    significant = state.multipliers > SIGNIFICANT * state.scale
     a, b = len(active.constraint), len(active.constraint) + len(active.lower)
-    at_limit = active.margins <= 1e-8
+    at_limit = active.margins <= REACHED
     binding = significant & at_limit
     fixed = np.concatenate([active.lower[binding[a:b]], active.upper[binding[b:]]])
     columns = np.setdiff1d(np.arange(evaluator.space.size), fixed)
-    weights = lagrangian_weights(constraint_multipliers, state.equality_multipliers)
+    weights = state.weights(evaluator.constraint_count)
     hessian = evaluator.hessian(state.point, weights, columns) / state.scale
     size = max(float(np.abs(hessian).max(initial=0.0)), 1e-3)
     hessian[fixed, fixed] = size
@@ -538,6 +595,8 @@ def quadratic_programme(
         violated = missed > 0
         step = np.linalg.lstsq(rows[violated], missed[violated], rcond=1e-8)[0]
         return np.asarray(step, dtype=float), prices
-    nearest = -residual[:-1] / residual[-1]
-    prices[useful] = weights / -residual[-1] / length[useful]
+    held = weights > 0  # solved again: the residual is inexact if the curvatures differ widely
+    nearest = np.linalg.lstsq(scaled_rows[held], needed[held], rcond=1e-10)[0]
+    weights[held] = np.linalg.lstsq(scaled_rows[held].T, nearest, rcond=1e-10)[0]
+    prices[useful] = weights / length[useful]
     return np.linalg.solve(factor.T, nearest - scaled_slope), prices

@@ -12,6 +12,7 @@ from ..base.dataclass import dataclass
 from ..base.progress import tell
 from ..design import quantity_of
 from ..evaluation import Evaluation, PreparedDesign, evaluate
+from ..evaluation.kernel import with_few_samples
 from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics, require_movable_objective
 from .choices import (
     MOST_SOLVED,
@@ -212,22 +213,14 @@ def _interrupted(solution: Solution) -> Solution:
     return replace(solution, outcome=outcome)
 
 
-MANY_SAMPLES = 5000
-"""Samples of all duty cycles, above which a search begins with fewer of them (our choice). With 100
-cycles of 1000 samples, 2048 points of the sweep alone would take minutes."""
-FEW_SAMPLES = 200
-"""Samples of each cycle with which such a search begins (our choice)."""
-
-
 def _searched(actuator: ActuatorProblem, fault: Fault | None, **settings: Any) -> Solution:
     """Solve; with long duty cycles first for few of their samples, then from there for all."""
-    duty = actuator.subject.design.duty
-    samples = 0 if duty is None else sum(duty.record(cycle).time.size for cycle in duty.cycles)
-    if samples <= MANY_SAMPLES:
+    subject = with_few_samples(actuator.subject)
+    if subject is actuator.subject:
         return _confirmed(actuator, **settings)
-    few = build(replace(actuator.subject, most_samples=FEW_SAMPLES), fault)
+    few = build(subject, fault)
     first = _confirmed(few, **settings)
-    again = settings | {"starts": 1, "samples": 0}
+    again = settings | {"starts": 1, "samples": 0, "check": bool(first.warnings)}
     if settings["max_seconds"] is not None:
         again["max_seconds"] = max(settings["max_seconds"] - first.seconds, 0.0)
     if first.interrupted:

@@ -169,6 +169,7 @@ def solve(
     more_starts: Sequence[Vector] = (),
     keep_interrupted: bool = False,
     stop: Callable[[], bool] | None = None,
+    check: bool = True,
 ) -> Solution:
     """Find the best point of a problem.
 
@@ -185,6 +186,7 @@ def solve(
     keep_interrupted : whether the best point so far is returned after Ctrl-C
     stop : called before every evaluation of a descent; if it returns True, the search ends with the
         best point so far
+    check : whether gradients are compared with finite differences before they are used
 
     Raises
     ------
@@ -204,7 +206,8 @@ def solve(
         search.objective_scale = swept.scale
         points = _starts(search, swept, starts, more_starts)
         if points:
-            search.warnings += evaluator.check_gradients(points[0])
+            if check:
+                search.warnings += evaluator.check_gradients(points[0])
             if name == "auto":
                 _default_path(search, points)
             else:
@@ -254,14 +257,12 @@ def _default_path(search: Descents, points: list[Point]) -> None:
                 search.restore(search.optima[-1].point, start=point)
     if search.least_infeasible and not search.feasible:
         return
-    best = search.best()
-    if best is not None and best.point.violation <= MET and not search.succeeded:
-        search.descend(best.point, "LD_SLSQP", linear=False, max_evaluations=LOCAL_EVALUATIONS)
     failed = [
         point
         for point in failed[:2]
         if not search.descend(point, "LD_SLSQP", linear=True, max_evaluations=LOCAL_EVALUATIONS)
     ]
+    search.complete()
     if search.succeeded or not search.feasible:
         return
     for point in failed:

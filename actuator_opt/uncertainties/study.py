@@ -15,6 +15,7 @@ from ..base.progress import tell
 from ..evaluation import Evaluation, PreparedDesign
 from ..evaluation.build import spec_hash
 from ..evaluation.film import films_asked
+from ..evaluation.kernel import with_few_samples
 from ..evaluation.result import YieldEstimate
 from ..optimisation.problem import Vector
 from ..version import VERSION
@@ -309,6 +310,8 @@ it takes a few per cent of the time of an optimisation)."""
 def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 0) -> YieldEstimate:
     """Estimate the yield of a design from the first `DRAWS` independent draws of `uncertainty`.
 
+    Long duty cycles count with few of their samples (`with_few_samples`).
+
     Parameters
     ----------
     subject : the prepared design
@@ -327,7 +330,7 @@ def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 
     if films_asked(subject.design):
         return YieldEstimate(why="solving the oil films of the seals takes too long")
     try:
-        model = UncertainModel(subject, inputs(subject))
+        model = UncertainModel(with_few_samples(subject), inputs(subject))
         counts = draw(model, DRAWS, seed)
     except ActuatorError as error:
         return YieldEstimate(why=error.diagnostics[0].message)

@@ -9,6 +9,7 @@ import pytest
 from duty_case import knee, wave
 
 import actuator_opt as ao
+from actuator_opt.evaluation import kernel
 from actuator_opt.evaluation.duty_cycles.remedies import CHECKED, Shortfall, shortfalls
 from actuator_opt.evaluation.duty_cycles.study import study
 from actuator_opt.evaluation.kernel import duty_numbers, duty_results
@@ -66,6 +67,16 @@ def test_every_cure_is_enough_and_not_much_more_than_needed(changed, metric, pat
         less = margins(actuator.changed({remedy.path: nearer}))
         assert less[metric] < 0, remedy
         assert remedy.text in shortfall.sentence
+
+
+def test_few_samples_of_a_long_cycle_lead_to_the_same_cures(monkeypatch):
+    """The scan of a long cycle uses few samples; every cure is confirmed by all of them."""
+    actuator = knee(stated="repeats: 5e6\nstarts: 2000\n", **FORCE)
+    expected = missed(actuator)["duty_supply_share"].remedies
+    monkeypatch.setattr(kernel, "MANY_SAMPLES", 20)
+    monkeypatch.setattr(kernel, "FEW_SAMPLES", 24)
+    assert kernel.with_few_samples(actuator.subject()).most_samples == 24
+    assert missed(actuator)["duty_supply_share"].remedies == expected
 
 
 def test_force_lacks_at_the_sample_of_the_largest_need():

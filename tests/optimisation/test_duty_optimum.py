@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
-from actuator_opt.evaluation import evaluate
+from actuator_opt.evaluation import evaluate, kernel
 from actuator_opt.evaluation.kernel import duty_numbers
-from actuator_opt.optimisation import run
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.evaluator import Evaluator
 
@@ -72,13 +71,15 @@ def test_a_search_that_begins_with_few_samples_finds_the_same(
     """A long record: the search begins with some samples, and its optimum holds for all."""
     tight = actuator.changed({"requirements.duty_supply_share.max": 0.47})
     whole = ao.optimise(tight, prices=False)
-    monkeypatch.setattr(run, "MANY_SAMPLES", 100)
-    monkeypatch.setattr(run, "FEW_SAMPLES", 24)
+    monkeypatch.setattr(kernel, "MANY_SAMPLES", 100)
+    monkeypatch.setattr(kernel, "FEW_SAMPLES", 24)
     few = ao.optimise(tight, prices=False)
     assert few.objective_value == pytest.approx(whole.objective_value, rel=1e-8)
     assert few.kkt is not None
     assert few.kkt.residual <= 1e-6
     assert len(few.starts) == len(whole.starts)
+    yields = [x.best_evaluation.yield_estimate.value for x in (few, whole)]
+    assert yields[0] == pytest.approx(yields[1], abs=0.05)  # of 500 draws, also of few samples
     duty = few.evaluation.duty
     assert duty is not None
     assert duty.cycles[0].traces["share"].max() == pytest.approx(0.47, rel=1e-6)

@@ -67,6 +67,15 @@ def test_quadratic_programme_is_optimal(seed, n, rows):
     np.testing.assert_allclose(prices * left, 0, atol=1e-7)
 
 
+def test_a_vertex_is_exact_whatever_the_curvature():
+    """Two rows hold both variables: the step follows from them, though one curvature is tiny."""
+    hessian = np.array([[1e-3, 1.2e-5], [1.2e-5, 6e-6]])
+    rows, margins = np.array([[2.0, 1.0], [-1.0, 0.0]]), np.array([-2e-3, 1e-3])
+    step, prices = kkt.quadratic_programme(hessian, np.ones(2), rows, margins)
+    assert step == pytest.approx([1e-3, 0.0], abs=1e-9)
+    assert prices == pytest.approx([1 + 1.2e-8, 1 - 1e-6 + 2.4e-8], abs=1e-9)
+
+
 def test_contradicting_rows_give_the_least_violation():
     """Where linearised rows exclude each other, the step halves the contradiction."""
     step, _ = kkt.quadratic_programme(

@@ -8,11 +8,12 @@ import problems
 import pytest
 
 from actuator_opt.base.errors import InputError
-from actuator_opt.optimisation import kkt, solver
+from actuator_opt.optimisation import kkt, nlopt_wrapper, solver
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.kkt import Curvature
 from actuator_opt.optimisation.problem import BoxProblem, PointValues, Space
 from actuator_opt.optimisation.resolve import parallel_descents
+from actuator_opt.optimisation.resolve.parallel_descents import Descents, SearchResult
 from actuator_opt.optimisation.solution import Outcome
 from actuator_opt.optimisation.solver import Halton, solve
 
@@ -376,6 +377,38 @@ def test_normal_path_imports_no_scipy():
         [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("slsqp", [True, False])
+def test_the_best_point_is_completed(monkeypatch, slsqp):
+    """A better point that is no optimum yet is the answer once it is one, also without SLSQP."""
+
+    def evaluate(x):
+        valley = (x[1] - x[0] ** 2) ** 2
+        return PointValues(1 + (x[0] - 2) ** 2 + 10 * valley, np.stack([x[1] - 1]))
+
+    problem = BoxProblem(
+        ("a", "b"), np.array([0.5, 0.5]), np.array([3.0, 9.0]), evaluate, ("least",)
+    )
+    search = Descents(Evaluator(problem), 0)
+    near, far = (
+        search.evaluator.point(search.evaluator.space.to_z(np.array(x)))
+        for x in ([1.999, 3.997], [1.9, 3.6])
+    )
+    search.optima = [
+        SearchResult(far, 0.0, "known"),
+        SearchResult(near, search.residual(near), "stopped"),
+    ]
+    if not slsqp:
+        keep = lambda evaluator, start, name, **_: nlopt_wrapper.NloptRun(start, 1, name)  # noqa: E731
+        monkeypatch.setattr(nlopt_wrapper, "run", keep)
+        monkeypatch.setattr(parallel_descents, "polish", lambda evaluator, point: point)
+    search.complete()
+    best = search.best()
+    assert best.good
+    assert best.point.x == pytest.approx([2.0, 4.0], rel=1e-6)
+    assert best.point.objective <= near.objective
+    assert "stopped" not in {result.algorithm for result in search.optima}
 
 
 def test_an_optimum_on_a_kink_is_optimal(monkeypatch):

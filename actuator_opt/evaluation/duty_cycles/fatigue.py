@@ -20,8 +20,6 @@ from .numbers import LIFE, STRESS, History, SamplePlan
 from .samples import NearSamples, SampleResults
 
 Rows = npt.NDArray[np.intp]
-MOST_KNOWN = 1000
-"""Orders of reversals whose pairs are kept."""
 _LOCAL = ("largest", "smallest", *STRESS)
 """Inputs of the damage of a counted cycle: the ends of the load, and the numbers of the part."""
 
@@ -83,7 +81,6 @@ class CycleFatigue:
     ) -> None:
         self.cycles, self._rows, self._outputs = tuple(cycles), rows, tuple(outputs)
         self.outputs = [x for x in outputs if x.startswith("pulse_") or x == "position"]
-        self._known: dict[bytes, tuple[Array, Array]] = {}
         parts = sorted(enumerate(plan.parts if cycles else ()), key=lambda pair: pair[1].bolted)
         self._loads: tuple[History, ...] = tuple(dict.fromkeys(part.load for _, part in parts))
         self._load = np.array([self._loads.index(part.load) for _, part in parts], dtype=np.intp)
@@ -114,7 +111,7 @@ class CycleFatigue:
             else:
                 outputs[k] = self._outputs.index(f"pulse_{load}")
         levels = track.values[np.arange(samples)[:, None], outputs, np.arange(designs)]
-        pairs = self._pairs(levels.transpose(1, 0, 2).reshape(samples, -1))
+        pairs = rainflow.repeating_cycles(history=levels.transpose(1, 0, 2).reshape(samples, -1))
 
         def by_load(values: Array) -> Array:
             return values.reshape(len(values), len(self._loads), designs).transpose(1, 0, 2)
@@ -205,33 +202,6 @@ class CycleFatigue:
         low = np.take_along_axis(low, np.argmin(low[..., :1], axis=1)[:, None], axis=1)
         return _Ends(high, low, np.broadcast_to(starts, high.shape))
 
-    def _pairs(self, levels: npt.NDArray[np.float64]) -> rainflow.Cycles:
-        """Rainflow cycles of histories (samples, designs).
-
-        The pairs depend on the order of the reversals alone, and are kept for equal orders.
-        """
-        turns = _turns(levels)
-        found = []
-        for k in range(levels.shape[1]):
-            at = np.flatnonzero(turns[:, k])
-            values = levels[at, k]
-            order = np.argsort(values, kind="stable")
-            ties = np.diff(values[order]) == 0
-            key = at.tobytes() + order.tobytes() + ties.tobytes()
-            if key not in self._known or np.isnan(values).any():
-                if len(self._known) >= MOST_KNOWN:
-                    self._known.clear()
-                pairs = rainflow.repeating_cycles(history=values)
-                self._known[key] = (at[pairs.largest], at[pairs.smallest])
-            found.append(self._known[key])
-        rows = max((len(pair[0]) for pair in found), default=0)
-        index = np.zeros((2, rows, len(found)), dtype=np.intp)
-        count = np.zeros((rows, len(found)))
-        for k, pair in enumerate(found):
-            index[:, : len(pair[0]), k] = pair
-            count[: len(pair[0]), k] = 1.0
-        return rainflow.Cycles(index[0], index[1], count)
-
     def _damage(self, numbers: Array, ends: _Ends) -> Array:
         """Miner's sums of all parts with slopes (parts, designs, 1 + directions)."""
         largest, smallest, count = (x[..., 0][self._load] for x in ends)
@@ -240,52 +210,52 @@ class CycleFatigue:
             slack = self._tension[:, None, None] & (x < 0)
             x[slack] = 0.0
             kept.append(~slack)
-        each, slopes, by_number = self._each(largest, smallest, numbers[..., 0])
+        steep = numbers.shape[2] > 1
+        metal = self._metal_damage(largest, smallest, numbers[..., 0], steep=steep)
+        bolts = slice(self._metal, None)
+        # the life of a bolt falls with the third power of the load (`endurance.bolt_cycles`)
+        pulse = (largest - smallest)[bolts]
+        life = numbers[self._life, :, 0][:, None]
+        cube = pulse**3 / life
+        each = np.concatenate([metal[..., 0], cube])
         result = np.zeros((len(self._load), *numbers.shape[1:]))
         result[..., 0] = (count * each).sum(axis=1)
-        if numbers.shape[2] == 1:
+        if not steep:
             return result
-        factors = [each, *(count * slope * some for slope, some in zip(slopes, kept, strict=True))]
+        square = 3 * pulse**2 / life
+        by_end = (
+            np.concatenate([metal[..., 1], square]),
+            np.concatenate([metal[..., 2], -square]),
+        )
+        factors = [each, *(count * slope * some for slope, some in zip(by_end, kept, strict=True))]
         for load in range(len(self._loads)):
             parts = np.flatnonzero(self._load == load)
             steps = (end[load, :, :, 1:] for end in (ends.times, ends.largest, ends.smallest))
             result[parts, :, 1:] = sum(
                 _summed(factor[parts], step) for factor, step in zip(factors, steps, strict=True)
             )
-        for rows, some, slope in by_number:
+        by_number = [
+            (row, slice(self._metal), metal[..., 3 + k]) for k, row in enumerate(self._stress)
+        ]
+        for rows, some, slope in [*by_number, (self._life, bolts, -cube / life)]:
             factor = (count[some] * slope).sum(axis=1)[..., None]
             result[some, :, 1:] += factor * numbers[rows, :, 1:]
         return result
 
-    def _each(
-        self, largest: Array, smallest: Array, values: Array
-    ) -> tuple[Array, tuple[Array, Array], list[tuple[Rows, slice, Array]]]:
-        """Damage of every counted cycle (parts, cycles, designs), and its slopes.
+    def _metal_damage(
+        self, largest: Array, smallest: Array, values: Array, *, steep: bool
+    ) -> Array:
+        """Damage of every counted cycle of metal parts (parts, cycles, designs, 1 + inputs).
 
-        The slopes are by both ends of the cycle, and by the numbers of the parts: rows of the
-        numbers, parts, slope.
+        Behind it, if `steep`, are its slopes by the inputs `_LOCAL`.
         """
-        metal, bolts = slice(self._metal), slice(self._metal, None)
-        points = np.empty((*largest[metal].shape, len(_LOCAL)))
-        points[..., 0], points[..., 1] = largest[metal], smallest[metal]
+        shape = largest[: self._metal].shape
+        points = np.empty((*shape, len(_LOCAL)))
+        points[..., 0], points[..., 1] = largest[: self._metal], smallest[: self._metal]
         points[..., 2:] = values[self._stress].transpose(1, 2, 0)[:, None]
-        identity = np.eye(len(_LOCAL))[None]
-        found = self._damage_of.duals(np.empty((1, 0)), points.reshape(-1, len(_LOCAL)), identity)
-        found = found[:, 0].reshape(*points.shape[:-1], 1 + len(_LOCAL))
-        # the life of a bolt falls with the third power of the load (`endurance.bolt_cycles`)
-        pulse = (largest - smallest)[bolts]
-        life = values[self._life][:, None]
-        cube, square = pulse**3 / life, 3 * pulse**2 / life
-        by_number = [(rows, metal, found[..., 3 + k]) for k, rows in enumerate(self._stress)]
-        by_number.append((self._life, bolts, -cube / life))
-        return (
-            np.concatenate([found[..., 0], cube]),
-            (
-                np.concatenate([found[..., 1], square]),
-                np.concatenate([found[..., 2], -square]),
-            ),
-            by_number,
-        )
+        seeds = np.eye(len(_LOCAL))[None] if steep else np.zeros((1, len(_LOCAL), 0))
+        found = self._damage_of.duals(np.empty((1, 0)), points.reshape(-1, len(_LOCAL)), seeds)
+        return found.reshape(*shape, -1)
 
 
 def _summed(factors: Array, steps: Array) -> Array:
@@ -312,10 +282,3 @@ def _damage_of(points: Array) -> Array:
     )
     damage: Array = (1 / cycles)[None]
     return damage
-
-
-def _turns(values: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-    """Whether samples are local extremes of repeating histories (samples, designs)."""
-    before, after = np.roll(values, 1, axis=0), np.roll(values, -1, axis=0)
-    turns: npt.NDArray[np.bool_] = ~((values - before) * (after - values) > 0)
-    return turns

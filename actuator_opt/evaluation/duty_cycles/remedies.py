@@ -21,13 +21,18 @@ from ...design.duty import DutyCycle
 from ...design.model import Design
 from ...design.paths import quantity_of
 from ...metrics import METRICS
-from ..kernel import PreparedDesign, duty_numbers, duty_results
+from ..kernel import PreparedDesign, duty_numbers, duty_results, with_few_samples
 from .study import CycleStudy, DutyStudy, Lack, Remedy, Shortfall, study as of_models
 
 Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
-CHECKED = ("duty_supply_share", "duty_suction_ratio", "duty_stroke_margin", "duty_fatigue")
-"""Metrics of duty cycles that the check list limits."""
+CHECKED = {
+    "duty_supply_share": ("share",),
+    "duty_suction_ratio": ("pressure_a_min", "pressure_b_min"),
+    "duty_stroke_margin": ("position_min", "position_max"),
+    "duty_fatigue": ("damage",),
+}
+"""Metrics of duty cycles that the check list limits, and the results of the cycles they need."""
 LIFE = "the life"
 """Word for all cycles of a life."""
 STEPS, FINER = 8, 4
@@ -247,16 +252,20 @@ class _Model:
 
     def __init__(self, subject: PreparedDesign, limits: Mapping[str, tuple[Sense, float]]) -> None:
         self._subject, self._limits = subject, limits
+        self._few = with_few_samples(subject)
         self._known = self._faults({})  # a search that found no design may leave contradictions
-        results = duty_results(subject, subject.values()).metrics
+        self._wanted = {result for metric in limits for result in CHECKED[metric]}
+        results = duty_results(subject, subject.values(), self._wanted).metrics
         self.damage = {
             place: float(np.ravel(x)[0]) for place, x in results.get("duty_fatigue", {}).items()
         }
-        self.present = self._margins({}, 1)
+        self.present = self._margins(subject, {}, 1)
 
-    def _margins(self, varied: Mapping[str, Floats], count: int) -> dict[tuple[str, str], Floats]:
+    def _margins(
+        self, subject: PreparedDesign, varied: Mapping[str, Floats], count: int
+    ) -> dict[tuple[str, str], Floats]:
         """Least margins (designs,) by metric and cycle."""
-        results = duty_results(self._subject, self._subject.values(varied)).metrics
+        results = duty_results(subject, subject.values(varied), self._wanted).metrics
         margins: dict[tuple[str, str], Floats] = {}
         for metric, (sense, limit) in self._limits.items():
             for place, value in results.get(metric, {}).items():
@@ -268,9 +277,11 @@ class _Model:
                 margins[key] = np.minimum(margins[key], known) if key in margins else known
         return margins
 
-    def enough(self, target: tuple[str, str], path: str, values: Floats) -> Bools:
+    def _enough(
+        self, subject: PreparedDesign, target: tuple[str, str], path: str, values: Floats
+    ) -> Bools:
         """Whether values of a number meet the target and miss no other check that is met now."""
-        margins = self._margins({path: values}, values.size)
+        margins = self._margins(subject, {path: values}, values.size)
         enough = margins[target] >= 0
         for key, margin in margins.items():
             enough &= margin >= min(-MISSED, self.present[key][0])
@@ -294,22 +305,43 @@ class _Model:
     def _nearest(
         self, target: tuple[str, str], path: str, now: float, factor: float
     ) -> float | None:
-        """The sufficient value nearest to the present one, rounded away from it."""
+        """The sufficient value nearest to the present one, rounded away from it.
+
+        Few samples of long cycles give candidates; if all samples refuse these, they are searched.
+        """
+        long = self._few is not self._subject
+        for subject in (self._few, self._subject) if long else (self._subject,):
+            candidates = self._rounded(subject, target, path, now, factor)
+            if not candidates.size:
+                return None
+            enough = np.flatnonzero(self._enough(self._subject, target, path, candidates))
+            for value in candidates[enough].tolist():
+                if self._valid(path, value):
+                    return float(value)
+        return None
+
+    def _rounded(
+        self,
+        subject: PreparedDesign,
+        target: tuple[str, str],
+        path: str,
+        now: float,
+        factor: float,
+    ) -> Floats:
+        """Rounded values around the first sufficient one, in order; none if none is sufficient."""
         first, last = now, now * factor
         for steps in (STEPS, FINER, FINER):
             values = np.geomspace(first, last, steps + 1)[1:]
-            enough = np.flatnonzero(self.enough(target, path, values))
+            enough = np.flatnonzero(self._enough(subject, target, path, values))
             if not enough.size:
-                return None
+                return np.empty(0)
             at = int(enough[0])
             first, last = (first if at == 0 else float(values[at - 1])), float(values[at])
         quantity = quantity_of(path, self._subject.design)
         scale = quantity.to_display(1.0)
         finer = np.geomspace(first, last, FINER + 1)[1:]
         rounded = [_outward(value * scale, DIGITS, up=factor > 1) / scale for value in finer]
-        rounded += [_outward(last * scale, DIGITS + 2, up=factor > 1) / scale]
-        enough = np.flatnonzero(self.enough(target, path, np.array(rounded)))
-        return next((rounded[at] for at in enough if self._valid(path, rounded[at])), None)
+        return np.array([*rounded, _outward(last * scale, DIGITS + 2, up=factor > 1) / scale])
 
     def _valid(self, path: str, value: float) -> bool:
         """Whether a design file may have this value, whatever the bounds of a variable."""

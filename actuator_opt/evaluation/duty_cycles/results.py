@@ -15,8 +15,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...base.numeric import STEP, Array, sorted_unique
+from ...base.numeric import STEP, Array, real, sorted_unique, where
 from ...base.quantities import Sense
+from ...base.symbolic.recorded import RecordedFunction
 from ...design.cycle_record import CycleRecord
 from ...models import heat_transfer, supply_sizing
 from ..values import Values
@@ -35,8 +36,9 @@ from .samples import (
 WINDOWS = 8
 """Windows of time of all cycles together (our choice). The extremes in each window are separate
 limits of the optimiser."""
-MOST_SAMPLES = 200_000
-"""Samples of all designs that are computed together, to bound memory."""
+MOST_SAMPLES = 20_000
+"""Samples of all designs that are computed together, so that their results stay in fast memory: ten
+times as many took 1.4 times as long."""
 LEAST_WINDOWS = 2
 """Windows of each cycle if there are many cycles."""
 RANKS = 2
@@ -285,6 +287,19 @@ class _Cycle:
             for (name, label), _, _ in extremes:
                 self.keys += [(name, f"{label}|{place}" if label else place) for place in ranked]
             self._sizes.append(len(extremes) * len(ranked))
+        self._needs = self._outputs_needed()
+
+    def _outputs_needed(self) -> npt.NDArray[np.bool_]:
+        """Whether each result needs each output at all samples (keys, outputs)."""
+        outputs, ends = self.model.outputs, np.cumsum(self._sizes)
+        needs = np.zeros((len(self.keys), len(outputs)), dtype=bool)
+        needs[FLOW_SUMS, outputs.index("flow")] = True
+        needs[ends[0] : ends[1], outputs.index("position")] = True
+        for (extremes, _), first, last in zip(self._blocks, ends[1:], ends[2:], strict=False):
+            rows = np.arange(first, last)
+            places = [output for _, output, _ in extremes]
+            needs[rows, np.repeat(places, len(rows) // len(places))] = True
+        return needs
 
     @property
     def _blocks(self) -> tuple[tuple[list[Extreme], TimeWindows], ...]:
@@ -292,14 +307,8 @@ class _Cycle:
 
     def needed(self, wanted: Array, more: Sequence[str]) -> Array:
         """Whether each output is needed for the wanted results, or among `more` (outputs,)."""
-        _, exchange, *picked = np.split(wanted, np.cumsum(self._sizes[:-1]))
-        outputs = self.model.outputs
-        needed = np.array([name in more for name in outputs])
-        needed[outputs.index("position")] |= bool(exchange.any())
-        needed[outputs.index("flow")] |= bool(wanted[FLOW_SUMS].any())
-        for (extremes, _), some in zip(self._blocks, picked, strict=True):
-            kept = np.flatnonzero(some.reshape(len(extremes), -1).any(axis=1))
-            needed[[extremes[k][1] for k in kept]] = True
+        needed = np.array([name in more for name in self.model.outputs])
+        needed |= self._needs[wanted].any(axis=0)
         return needed
 
     def samples(self, values: Array, wanted: Array | None = None) -> SampleResults:
@@ -386,23 +395,42 @@ class _Cycle:
         All designs turn at the same samples: a lever arm does not change its sign. The last stroke
         of a closed cycle may go on in its first.
         """
-        u = dict(zip(self.model.names, stepped(values, seeds), strict=True))
         turns = np.broadcast_to(self._turns[:, None], (len(self._turns), values.shape[1]))
-        x = near.at(self.model.outputs.index("position"), turns)
-        position = (complexed(x) if seeds.shape[2] else x[..., 0]).reshape(len(turns), -1)
+        position = near.at(self.model.outputs.index("position"), turns)
         strokes = position[1:] - position[:-1]
-        if self.record.closed and strokes[0, 0].real * strokes[-1, 0].real > 0:
+        if self.record.closed and strokes[0, 0, 0] * strokes[-1, 0, 0] > 0:
             strokes = np.concatenate([strokes[:1] + strokes[-1:], strokes[1:-1]])
-        duration = (self.record.time[-1] - self.record.time[0]) * u["time_scale"]
-        filling = np.stack([strokes, -strokes])
-        fresh = heat_transfer.exchanged_volume(
-            piston_area=np.stack([u["area_a"], u["area_b"]])[:, None],
-            travel=np.where(filling.real > 0, filling, 0.0),
-            line_volume=np.stack(
-                np.broadcast_arrays(u["line_volume_a"], u["line_volume_b"], duration)[:2]
-            )[:, None],
-        )
-        return duals_of(fresh.sum(axis=1) / duration, values.shape[1])
+        numbers = np.concatenate([values[:, :, None], seeds], axis=2)
+        shape = (len(EXCHANGE), values.shape[1], len(strokes), len(_STROKE), strokes.shape[2])
+        points = np.empty(shape)  # chambers, designs, strokes, inputs, 1 + directions
+        points[:, :, :, 0] = np.stack([strokes, -strokes]).transpose(0, 2, 1, 3)
+        for k, name in enumerate(("area", "line_volume")):
+            rows = [self.model.names.index(f"{name}_{chamber}") for chamber in "ab"]
+            points[:, :, :, 1 + k] = numbers[rows][:, :, None]
+        points[:, :, :, 3] = numbers[self.model.names.index("time_scale"), :, None]
+        points[:, :, :, 3] *= self.record.time[-1] - self.record.time[0]
+        flat = points.reshape(-1, *shape[3:])
+        groups = shape[0] * shape[1]
+        flows = _EXCHANGE_OF.duals(np.empty((1, 0)), flat[:, :, 0], flat[:, :, 1:], groups)
+        return flows.reshape(*shape[:2], shape[4])
+
+
+_STROKE = ("travel", "area", "line_volume", "duration")
+"""Inputs of the flow that a stroke exchanges; the travel is negative away from the chamber."""
+
+
+def _exchange_of(points: Array) -> Array:
+    """Flow of fresh oil by single strokes (1, strokes), from numbers (`_STROKE`, strokes)."""
+    travel, area, line_volume, duration = points
+    filling = where(real(travel) > 0, travel, 0.0)
+    volume = heat_transfer.exchanged_volume(
+        piston_area=area, travel=filling, line_volume=line_volume
+    )
+    flow: Array = (volume / duration)[None]
+    return flow
+
+
+_EXCHANGE_OF = RecordedFunction(_exchange_of, _STROKE, np.array([1.0, 1.0, 0.5, 1.0]))
 
 
 Extreme = tuple[tuple[str, str], int, float]

@@ -23,9 +23,21 @@ from ..nlopt_wrapper import ARRIVAL
 from ..problem import ParametricProblem, Vector
 from ..solution import MET, StartRecord
 from .changed import ChangedProblems
-from .steps import RESIDUAL, Batch, Descent, Steps, free_hessians
+from .steps import (
+    RESIDUAL,
+    Batch,
+    Descent,
+    Steps,
+    free_hessians,
+    run_batch,
+    trusted_steps,
+    valley_at,
+)
 
 FINISH = "active-set Newton"
+
+
+TRUSTED = "quadratic steps within a trust region"
 
 
 RESTORATION = "least worst violation by LD_SLSQP"
@@ -191,6 +203,31 @@ class Descents:
         optimum = SearchResult(polished, self.residual(polished), algorithm)
         self.optima.append(optimum)
         return optimum
+
+    def complete(self) -> None:
+        """Continue from the best feasible point if it is no optimum yet; an optimum replaces it.
+
+        A run that stopped at a known optimum nearby may have left a better point behind. SLSQP
+        comes first, then steps within a trust region, with the Hessian at the point.
+        """
+        best, evaluator = self.best(), self.evaluator
+        if best is None or best.good or best.point.violation > MET:
+            return
+        run = nlopt_wrapper.run(
+            evaluator, best.point, "LD_SLSQP", max_evaluations=LOCAL_EVALUATIONS, seed=self.seed
+        )
+        end = self.finish(run.point, run.algorithm)
+        if not end.good and evaluator.exact and not evaluator.problem.equality_names:
+            descent = valley_at(evaluator, best.point).trusted()
+            solver = trusted_steps(evaluator, descent, best.point.z)
+            (point,) = run_batch(
+                [solver], lambda asked: [evaluator.point(z) for z in asked.values()]
+            )
+            if point is not None:
+                end = self.finish(point, TRUSTED)
+        states = (kkt.state_at(evaluator, x.point) for x in (best, end))
+        if end.good and kkt.acceptable(evaluator, *states):
+            self.optima = [result for result in self.optima if result is not best]
 
     def best(self, further: Sequence[SearchResult] = ()) -> SearchResult | None:
         """The best of the optima and of further points: by violation first, then by objective.

@@ -394,10 +394,6 @@ def restoring_steps(
 
 FIRM = 1e-6
 """A limit is active if its multiplier, relative to the largest, exceeds this."""
-FLATTEST = 1e-10
-"""Least ratio of smallest to largest curvature; below it, mixed second derivatives are dropped."""
-LEAST = 1e-6
-"""Least curvature, relative to the largest multiplier."""
 
 
 @dataclass(frozen=True)
@@ -457,7 +453,7 @@ def free_hessians(evaluator: Evaluator, descents: Sequence[Descent]) -> list[Vec
         weights = -descent.multipliers
         products = np.tensordot(weights, part[1 : 1 + len(weights)], axes=1).T
         products += part[0].T / descent.scale
-        result.append(_convex(z, products, float(np.abs(weights).max(initial=0.0))))
+        result.append(kkt.convex_matrix(z, products, float(np.abs(weights).max(initial=0.0))))
     return result
 
 
@@ -469,28 +465,3 @@ def _free(evaluator: Evaluator, descent: Descent) -> Vector:
     assert prices is not None
     weight = prices * np.sqrt((rows**2).sum(axis=1))
     return kkt.null_space(rows[weight > FIRM * weight.max(initial=0.0)], size)
-
-
-def _convex(z: Vector, products: Vector, largest: float) -> Vector:
-    """A positive definite matrix (nf, nf) whose products with the vectors z are `products` (nf, d).
-
-    The columns of z (nf, d) are orthonormal; `largest` is the largest multiplier, which scales the
-    least curvature.
-    """
-    size = len(z)
-    if z.shape[1] == 0:
-        return np.eye(size)
-    values, vectors = np.linalg.eigh(z.T @ products + products.T @ z)
-    values = np.maximum(np.abs(values) / 2, LEAST * max(largest, 1e-3))
-    inner = (vectors * values) @ vectors.T
-    across = products - z @ (z.T @ products)
-    complement = np.eye(size) - z @ z.T
-    crossed = across @ np.linalg.solve(inner, across.T)
-    stiffness = 1.0 + float(np.linalg.norm(crossed, 2))
-    matrix = np.asarray(z @ inner @ z.T + across @ z.T + z @ across.T + stiffness * complement)
-    curvatures = np.linalg.eigvalsh(matrix)
-    return (
-        matrix
-        if curvatures[0] > FLATTEST * curvatures[-1]
-        else np.asarray(z @ inner @ z.T + complement)
-    )
