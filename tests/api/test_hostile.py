@@ -77,13 +77,13 @@ def test_no_record_runs_a_program(place, tmp_path, monkeypatch):
         runs = tmp_path / kind
         made = forged(runs, named, source)
         monkeypatch.setenv("ACTUATOR_OPT_RUNS", str(runs))
-        for name in (made, made.stem, "last"):
-            for words in (
-                ["report", name], ["compare", STEEL, name], ["explore", name],
-                ["runs", "show", name],
-            ):  # fmt: skip
-                out = [] if words[0] == "runs" else ["--out", tmp_path / "out"]
-                assert run(*words, *out).code in (0, 3), words
+        for words in (
+            ["report", made], ["compare", STEEL, made], ["explore", made], ["runs", "show", made],
+            ["report", made.stem], ["compare", STEEL, "last"], ["explore", made.stem],
+            ["runs", "show", "last"],
+        ):  # fmt: skip
+            out = [] if words[0] == "runs" else ["--out", tmp_path / "out"]
+            assert run(*words, *out).code in (0, 3), words
         for act in (ao.restore, ao.report_run, ao.explore, lambda p: ao.compare(STEEL, p)):
             with pytest.raises(InputError):
                 act(made)
@@ -212,7 +212,7 @@ def test_a_bit_anywhere_in_a_store_is_noticed(tmp_path):
         numbers = connection.execute("SELECT numbers FROM rows").fetchone()[0]
     connection.close()
     chance, damaged = random.Random(20), 0
-    for place_of in [whole.index(numbers[:80]) + 75, *chance.sample(range(len(whole)), 12)]:
+    for place_of in [whole.index(numbers[:80]) + 75, *chance.sample(range(len(whole)), 8)]:
         data = bytearray(whole)
         data[place_of] ^= 1 << chance.randrange(8)
         rows.write_bytes(data)

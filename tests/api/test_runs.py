@@ -22,6 +22,7 @@ from actuator_opt.optimisation.run import optimise as solver_entry
 from actuator_opt.pages.trust import convergence_figure
 from actuator_opt.rendering.ink import Ink
 
+pytestmark = pytest.mark.usefixtures("searched_once")
 WALL = "  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n"
 SMALL = bench((WALL, ""), *PLIES)
 
@@ -85,7 +86,7 @@ def test_its_report_is_the_report_of_the_command(folder, design, tmp_path, optio
     made, again = tmp_path / "made", tmp_path / "again"
     optimised(design, "--starts", 1, "--report", "--out", made, *options)
     design.unlink()
-    monkeypatch.setattr("actuator_opt.optimisation.run.solve", None)
+    monkeypatch.setattr("actuator_opt.optimisation.run.optimise", None)
     result = run("report", "last", "--out", again)
     assert result.code == 0, result.err
     assert digests(made) == digests(again)

@@ -161,7 +161,7 @@ def test_a_sweep_is_reported_out_of_its_store(folder, design, tmp_path, more, mo
     assert digest(store) == before
 
 
-@pytest.mark.parametrize("method", ["grid", "sobol", "lhs"])
+@pytest.mark.parametrize("method", ["grid", "sobol", pytest.param("lhs", marks=pytest.mark.long)])
 @pytest.mark.parametrize("texts", [[], ["rod.material=steel_42crmo4,ti_6al4v"]])
 def test_values_of_the_best_are_those_of_their_points(design, method, texts):
     """Out of their rows as out of the plan, in the order asked for, to the last digit."""

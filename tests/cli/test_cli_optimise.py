@@ -207,7 +207,15 @@ def test_the_least_bad_point_may_contradict_itself():
     assert with_values(design, thick, contradictions=False).rod.outer_diameter == 0.0215
 
 
-@pytest.mark.parametrize("name", ["ld_slsqp", "LD_MMA", "LN_COBYLA", "AUGLAG+LD_LBFGS"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "ld_slsqp",
+        pytest.param("LD_MMA", marks=pytest.mark.long),
+        pytest.param("LN_COBYLA", marks=pytest.mark.long),
+        "AUGLAG+LD_LBFGS",
+    ],
+)
 def test_algorithms(name, plain):
     """Algorithms that suit the problem find the same optimum."""
     value = optimised(BENCH, "--algorithm", name)["objective"]["value"]

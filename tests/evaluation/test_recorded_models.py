@@ -60,7 +60,7 @@ def rows(values, count):
     return np.concatenate([np.broadcast_to(values.objective, (1, count)), values.constraints])
 
 
-SLOW = ("huang_110_80_560", "knee_walking")
+SLOW = ("flight_control", "huang_110_80_560", "knee_walking")
 """Oil films and cycles of many samples take seconds."""
 
 

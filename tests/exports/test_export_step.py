@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from cli_runner import DESIGNS, bench, block
 from hypothesis import given, strategies as st
+from shipped import evaluated
 from step_reader import StepFile, volume
 
 import actuator_opt as ao
@@ -42,7 +44,7 @@ rod:
 def exported(design):
     """Evaluation, densities and the file read back, with the numbers the parser saw."""
     actuator = design if isinstance(design, ao.Actuator) else ao.read(design)
-    evaluation = ao.evaluate(actuator)
+    evaluation = evaluated(design.stem) if isinstance(design, Path) else ao.evaluate(actuator)
     densities = {n: m.numbers["density"] for n, m in actuator.subject().materials.items()
                  if "density" in m.numbers}  # fmt: skip
     text = step(bodies(evaluation), name=evaluation.name, program="test")

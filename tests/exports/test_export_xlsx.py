@@ -9,6 +9,7 @@ from dataclasses import replace
 import pytest
 from cli_runner import bench
 from formula_reader import Workbook
+from shipped import evaluated
 from test_export_step import SHIPPED
 
 import actuator_opt as ao
@@ -39,7 +40,7 @@ QUICK = [path for path in SHIPPED if path.stem != "huang_110_80_560"]  # its fil
 @pytest.mark.parametrize("path", QUICK, ids=lambda path: path.stem)
 def test_formulas_give_the_evaluations_margins(path):
     """Margin and verdict of every requirement and check, computed from the cells alone."""
-    evaluation = ao.evaluate(path)
+    evaluation = evaluated(path.stem)
     book = opened(evaluation)
     computed = Workbook(book)
     checks = [row for row in evaluation.checks if row.limit is not None and row.metric]
@@ -60,7 +61,7 @@ def test_formulas_give_the_evaluations_margins(path):
 
 def test_sheets_are_readable_on_paper():
     """One page wide, every word of the tables within its column, a font that is named."""
-    book = opened(ao.evaluate(SHIPPED[0]))
+    book = opened(evaluated(SHIPPED[0].stem))
     for sheet in book:
         assert sheet.sheet_properties.pageSetUpPr.fitToPage
         assert sheet.page_setup.fitToHeight == 0

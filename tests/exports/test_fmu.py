@@ -244,7 +244,11 @@ def test_a_scenario_alone_that_cannot_be_written(text, words, code, message, tmp
 
 @pytest.mark.parametrize(
     ("scenario", "design"),
-    [(SERVO, COURSE), (KNEE.parent / "scenarios/knee_step.yaml", KNEE), ("stops", COURSE)],
+    [
+        pytest.param(SERVO, COURSE, marks=pytest.mark.long),
+        (KNEE.parent / "scenarios/knee_step.yaml", KNEE),
+        ("stops", COURSE),
+    ],
 )
 def test_an_established_host(scenario, design, tmp_path):
     """FMPy finds no fault; its runs equal `simulate`, without any input and parameter set.
