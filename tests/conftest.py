@@ -48,6 +48,17 @@ def pytest_collection_finish():
     gc.freeze()
 
 
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item, nextitem):
+    """What the functions of a test module have cached goes with its last test."""
+    if nextitem is not None and nextitem.path == item.path:
+        return
+    module = getattr(item, "module", None)
+    for one in vars(module).values() if module else ():
+        if hasattr(one, "cache_clear") and one.__module__ == module.__name__:
+            one.cache_clear()
+
+
 @pytest.fixture(scope="session", autouse=True)
 def coarse_images():
     """Images of sheets at a fifth of their resolution: drawing them is half the time of a report.

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from cases.digests import digests
-from cli_runner import KNEE, PLIES, bench, command, run, surroundings
+from cli_runner import PLIES, bench, command, run, surroundings
 
 import actuator_opt as ao
 from actuator_opt.base import runs as run_store
@@ -383,16 +383,16 @@ def test_a_maximised_objective_is_traced_as_it_is_stated():
     text = SMALL.replace("minimise: mass", "maximise: stiffness_min").replace(
         "requirements:", "requirements:\n  mass:\n    max: 1 kg"
     )
-    found = ao.optimise(ao.read(text), prices=False)
+    found = ao.optimise(ao.read(text), prices=False, starts=2)
     assert found.trace[-1][1] == pytest.approx(found.objective_value, rel=1e-5)
     assert found.objective_value > 0
     assert solver_entry is not None
 
 
-def test_interrupted_or_not_the_command_ends_as_before(folder, tmp_path):
+def test_interrupted_or_not_the_command_ends_as_before(folder, design):
     """A process of its own leaves a record and prints no word of it under --json."""
     done = subprocess.run(
-        command("optimise", KNEE, "--json"), capture_output=True, text=True, timeout=60,
+        command("optimise", design, "--json"), capture_output=True, text=True, timeout=60,
         check=False, env=surroundings(ACTUATOR_OPT_RUNS=str(folder)),
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")

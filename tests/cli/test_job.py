@@ -224,6 +224,9 @@ def _reported():
                 "Prices",
                 "Identification",
                 "Run",
+                "SealStudy",
+                "Uncertainty",
+                "Comparison",
             )
             yield pytest.param(name, marks=[pytest.mark.long] if slow else [])
 

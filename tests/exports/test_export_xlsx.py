@@ -10,7 +10,7 @@ import pytest
 from cli_runner import bench
 from formula_reader import Workbook
 from shipped import evaluated
-from test_export_step import SHIPPED
+from test_export_step import EACH, SHIPPED
 
 import actuator_opt as ao
 from actuator_opt.exports.xlsx import xlsx
@@ -34,10 +34,7 @@ def rows_of(book, title):
     return {cell.value: cell.row for cell in book[title]["A"][4:] if cell.value}
 
 
-QUICK = [path for path in SHIPPED if path.stem != "huang_110_80_560"]  # its films take seconds
-
-
-@pytest.mark.parametrize("path", QUICK, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EACH, ids=lambda path: path.stem)
 def test_formulas_give_the_evaluations_margins(path):
     """Margin and verdict of every requirement and check, computed from the cells alone."""
     evaluation = evaluated(path.stem)

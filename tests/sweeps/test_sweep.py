@@ -513,9 +513,9 @@ def test_metrics_of_the_best_are_numbers_or_none(knee):
     "vary",
     [
         "barrel.layup[1].angle=85,0,88 deg",
-        "load_cases[stance].position=10 %,50 %,90 %",
+        pytest.param("load_cases[stance].position=10 %,50 %,90 %", marks=pytest.mark.long),
         "load_cases[stance].position=10 mm,50 %,90 mm",
-        "load_cases[stance].position=10..90 mm:3",
+        pytest.param("load_cases[stance].position=10..90 mm:3", marks=pytest.mark.long),
         "load_cases[stance].speed=0.1,0,0.2 m/s",
     ],
 )
@@ -538,6 +538,7 @@ def test_a_contradiction_between_the_ends_of_a_list_is_no_best(knee):
         knee.changed({"barrel.layup[0].thickness": value})
 
 
+@pytest.mark.long
 def test_temperatures_that_leave_strengths_alone_move_together(tmp_path):
     """Within the environment's temperatures oil varies as an array; beyond, designs stand apart."""
     from actuator_opt.sweeps.chunk import Study
