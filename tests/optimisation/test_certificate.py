@@ -34,6 +34,7 @@ ROUNDING = 1e-9
 
 
 LONG = {
+    "aerospace",
     "knee_bonded",
     "knee sized by strength",
     "knee of free pressure",
