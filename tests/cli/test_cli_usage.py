@@ -145,10 +145,10 @@ def test_check_of_several_files(tmp_path):
     ("name", "file", "title"),
     [
         ("arm", "arm.yaml", "arm"),
-        ("arm.yaml", "arm.yaml", "arm"),
+        pytest.param("arm.yaml", "arm.yaml", "arm", marks=pytest.mark.long),
         ("left knee: α", "left_knee_α.yaml", "left knee: α"),
         ("legs/left", "legs/left.yaml", "left"),
-        ("7.5 kN", "7.5_kN.yaml", "7.5 kN"),
+        pytest.param("7.5 kN", "7.5_kN.yaml", "7.5 kN", marks=pytest.mark.long),
         ("?!", "actuator.yaml", "?!"),
     ],
 )
