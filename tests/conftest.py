@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import gc
+import json
 import os
 import sys
 import tempfile
@@ -46,6 +48,17 @@ def pytest_collection_finish():
     gc.freeze()
 
 
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item, nextitem):
+    """What the functions of a test module have cached goes with its last test."""
+    if nextitem is not None and nextitem.path == item.path:
+        return
+    module = getattr(item, "module", None)
+    for one in vars(module).values() if module else ():
+        if hasattr(one, "cache_clear") and one.__module__ == module.__name__:
+            one.cache_clear()
+
+
 @pytest.fixture(scope="session", autouse=True)
 def coarse_images():
     """Images of sheets at a fifth of their resolution: drawing them is half the time of a report.
@@ -56,6 +69,50 @@ def coarse_images():
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(paper, "PIXELS_PER_INCH", paper.PIXELS_PER_INCH / 5)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def sheets_compiled_once():
+    """A page that is written again with equal data is not compiled again.
+
+    `test_report_writer` compiles one twice and compares the bytes.
+    """
+    from actuator_opt.rendering import paper
+
+    compiled, made = paper.sheets, {}
+
+    @functools.wraps(compiled)
+    def sheets(source, data, timestamp):
+        key = (source, json.dumps(data, sort_keys=True), timestamp, paper.PIXELS_PER_INCH)
+        if key not in made:
+            while len(made) >= 16:
+                made.pop(next(iter(made)))
+            made[key] = compiled(source, data, timestamp)
+        pdf, images = made[key]
+        return pdf, list(images)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(paper, "sheets", sheets)
+        yield
+
+
+@pytest.fixture(scope="module")
+def searched_once():
+    """Equal optimisations are solved once; for modules whose subject is not the search."""
+    from actuator_opt.optimisation import run
+
+    solved, found = run.optimise, {}
+
+    @functools.wraps(solved)
+    def optimise(subject, *, fault=None, **options):
+        key = repr((subject.design, subject.plugins, sorted(options.items())))
+        if key not in found:
+            found[key] = solved(subject, fault=fault, **options)
+        return found[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run, "optimise", optimise)
         yield
 
 

@@ -20,7 +20,7 @@ from ..design.material import Material
 from ..design.model import Design
 from ..friction.law import Friction
 from ..joints.joint import ENCLOSED
-from ..metrics.table import AT_STOPS, split_case
+from ..metrics.table import AT_STOPS, METRICS, split_case
 from ..models import damping, elements, forces, lines, transmission_line
 from . import (
     barrel as barrel_module,
@@ -752,7 +752,7 @@ def sense_of(metric: str, subject: PreparedDesign) -> Sense | None:
         return worst_of(aims[metric])
     required = subject.design.requirements.get(metric)
     if required is None:
-        return subject.quantities[metric].worst
+        return (METRICS.get(metric) or subject.quantities[metric]).worst
     if required.min is not None and required.max is not None:
         return None
     return "max" if required.min is None else "min"

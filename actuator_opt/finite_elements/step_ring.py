@@ -241,6 +241,7 @@ def squeezed_step_ring(
     >>> seal = squeezed_step_ring(
     ...     section=2.6e-3, squeeze=0.15, groove_width=4.2e-3, rubber=MooneyRivlin.of_modulus(8e6),
     ...     plastic=MooneyRivlin.of_modulus(5e8, poissons_ratio=0.46), shape=shape,
+    ...     elements_around=32, edge_elements=2,
     ... )
     >>> print(f"{seal.contacts[0].line_load / (2.6e-3 * 8e6):.3f} of section times modulus")
     0.095 of section times modulus

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -130,6 +131,7 @@ def pass_cutoff(*, cutoff: float, order: int) -> float:
     return cutoff / math.pow(math.sqrt(2.0) - 1, 1 / (2 * order))
 
 
+@lru_cache(maxsize=64)  # every window of a record asks for the same few filters
 def low_pass(*, cutoff: float, order: int, sample_time: float, compensated: bool) -> Array:
     """Second-order sections of one of the filter's two passes.
 

@@ -66,8 +66,11 @@ def wrap(text: str, width: float, size: float) -> list[str]:
     >>> wrap("one two three", 12.0, 7.0)
     ['one two', 'three']
     """
+    text = text.replace("\n", " ").lstrip(" ")
+    if text_width(text, size) <= width:
+        return [text]
     lines = [""]
-    for word in text.replace("\n", " ").split(" "):
+    for word in text.split(" "):
         trial = f"{lines[-1]} {word}" if lines[-1] else word
         if text_width(trial, size) <= width:
             lines[-1] = trial
@@ -163,7 +166,8 @@ def _lines(table: Table, width: float) -> list[float]:
     """
     columns = [k for k, column in enumerate(table.columns) if column.on != "terminal"]
     body = [cells_of(row) for row in table.rows]
-    wides = dict(zip(columns, (_widths(table)[k] for k in columns), strict=True))
+    widths = _widths(table)
+    wides = {k: widths[k] for k in columns}
     spare = width - sum(wides.values())
     flexible = [k for k in columns if table.columns[k].flexible] or columns[:1]
     for k in flexible:

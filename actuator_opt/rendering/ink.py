@@ -100,6 +100,17 @@ _WIDE = {
 }
 
 
+class _Advances(dict[str, float]):
+    """Advance widths (em) by letter; a letter that no table has is added at its first use."""
+
+    def __missing__(self, letter: str) -> float:
+        self[letter] = 0.70 if letter.isupper() else 0.636 if letter.isascii() else 0.9
+        return self[letter]
+
+
+_ADVANCES = _Advances(_WIDE | _NARROW)
+
+
 def text_width(text: str, size: float, *, bold: bool = False) -> float:
     """Width (mm) of a text at a type size (pt), from advance widths of DejaVu Sans.
 
@@ -108,10 +119,7 @@ def text_width(text: str, size: float, *, bold: bool = False) -> float:
     """
     width = 0.0
     for letter in text:
-        advance = _NARROW.get(letter) or _WIDE.get(letter)
-        if advance is None:
-            advance = 0.70 if letter.isupper() else 0.636 if letter.isascii() else 0.9
-        width += advance
+        width += _ADVANCES[letter]
     return width * size * POINT * (1.1 if bold else 1.0)
 
 

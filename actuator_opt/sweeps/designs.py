@@ -126,7 +126,7 @@ class Designs:
         """
         count = self.plan.variants
         variants = np.unique(np.linspace(0, count - 1, min(count, VARIANTS)).astype(int))
-        checks = [self._varies_in(axis, self.plan.texts(int(variant))) for variant in variants]
+        checks = [self._varies_in(axis, int(variant)) for variant in variants]
         varies = all(check.varies for check in checks)
         if varies and len(variants) == count and not any(check.read for check in checks):
             remedy = "vary another number, or check that the design uses the part that it describes"
@@ -135,8 +135,9 @@ class Designs:
             )
         return varies
 
-    def _varies_in(self, axis: SweepAxis, texts: Mapping[str, str]) -> _Variation:
+    def _varies_in(self, axis: SweepAxis, variant: int) -> _Variation:
         """Whether an array of all test values gives the same results as separate designs."""
+        texts = self.plan.texts(variant)
         separate: dict[float, Many] = {}
         for value, mandatory in _test_values(axis):
             if len(separate) >= 2 and not mandatory:
@@ -147,17 +148,14 @@ class Designs:
                 self.contradicts = True
         if not separate:
             return _Variation(False, True)
-        try:
-            base = self.made(texts)  # prepared like the rows, where "worst" ignores the position
-        except InputError:
+        base = self._prepared(variant, {})  # like the rows, where "worst" ignores the position
+        if isinstance(base, str):
             base = self.made({**texts, axis.path: next(iter(separate))})
         combined = evaluate_many(base, {axis.path: np.array(list(separate))}, len(separate))
-        agrees = all(
-            np.isclose(values[k], single.metrics[name][0], rtol=AGREE, atol=0.0, equal_nan=True)
-            for name, values in combined.metrics.items()
-            for k, single in enumerate(separate.values())
-        )
-        return _Variation(agrees, axis.path in combined.read)
+        singles = [single.metrics for single in separate.values()]
+        expected = [[single[name][0] for single in singles] for name in combined.names]
+        close = np.isclose(combined.values, expected, rtol=AGREE, atol=0.0, equal_nan=True)
+        return _Variation(bool(close.all()), axis.path in combined.read)
 
     def alike(self, points: SweepPoints) -> Iterator[tuple[Array, int, dict[str, float]]]:
         """Group the points that share a prepared design.

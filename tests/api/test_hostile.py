@@ -77,13 +77,13 @@ def test_no_record_runs_a_program(place, tmp_path, monkeypatch):
         runs = tmp_path / kind
         made = forged(runs, named, source)
         monkeypatch.setenv("ACTUATOR_OPT_RUNS", str(runs))
-        for name in (made, made.stem, "last"):
-            for words in (
-                ["report", name], ["compare", STEEL, name], ["explore", name],
-                ["runs", "show", name],
-            ):  # fmt: skip
-                out = [] if words[0] == "runs" else ["--out", tmp_path / "out"]
-                assert run(*words, *out).code in (0, 3), words
+        for words in (
+            ["report", made], ["compare", STEEL, made], ["explore", made], ["runs", "show", made],
+            ["report", made.stem], ["compare", STEEL, "last"], ["explore", made.stem],
+            ["runs", "show", "last"],
+        ):  # fmt: skip
+            out = [] if words[0] == "runs" else ["--out", tmp_path / "out"]
+            assert run(*words, *out).code in (0, 3), words
         for act in (ao.restore, ao.report_run, ao.explore, lambda p: ao.compare(STEEL, p)):
             with pytest.raises(InputError):
                 act(made)
@@ -212,7 +212,7 @@ def test_a_bit_anywhere_in_a_store_is_noticed(tmp_path):
         numbers = connection.execute("SELECT numbers FROM rows").fetchone()[0]
     connection.close()
     chance, damaged = random.Random(20), 0
-    for place_of in [whole.index(numbers[:80]) + 75, *chance.sample(range(len(whole)), 12)]:
+    for place_of in [whole.index(numbers[:80]) + 75, *chance.sample(range(len(whole)), 8)]:
         data = bytearray(whole)
         data[place_of] ^= 1 << chance.randrange(8)
         rows.write_bytes(data)
@@ -343,7 +343,10 @@ def test_a_store_with_letters_that_are_none(tmp_path, text):
 def test_no_pdf_keeps_the_reader_busy(tmp_path, content):
     """Megabytes made to be slow are refused in a second."""
     path = tmp_path / "slow.pdf"
-    content = content.replace(BOMB, zlib.compress(bytes(400_000_000), 1))
+    if BOMB in content:
+        packer = zlib.compressobj(1)
+        packed = [packer.compress(bytes(1_000_000)) for _ in range(400)]
+        content = content.replace(BOMB, b"".join(packed) + packer.flush())
     path.write_bytes(b"%PDF-1.7\n" + content + b"\n%%EOF\n")
     begin = time.process_time()
     result = run("rerun", path, "--json")

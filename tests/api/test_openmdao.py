@@ -48,6 +48,7 @@ def test_metrics_and_their_partials():
             assert totals[metric, name][0, 0] == pytest.approx(slope, rel=1e-4, abs=1e-7 * scale)
 
 
+@pytest.mark.long
 def test_the_best_supply_pressure_of_actuator_and_pump():
     """With a pump whose mass grows with pressure, the system's slope is price plus pump."""
     model = om.Problem(reports=False)

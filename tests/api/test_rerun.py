@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import shlex
+from functools import cache
 
 import pytest
 from cases.digests import digest
@@ -24,15 +25,20 @@ SMALL = BENCH.replace("  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n", 
 
 @pytest.fixture(scope="module")
 def reports(tmp_path_factory):
-    """A report of an evaluation and one of an optimisation, with the designs gone."""
-    place = tmp_path_factory.mktemp("reports")
-    design = place / "small one.yaml"
-    design.write_text(SMALL)
-    more = ["--set", "load.mass=21 kg", "--date", "2025-01-02", "--json", "--report"]
-    assert run("evaluate", design, *more, "--out", place / "e").code == 0
-    assert run("optimise", design, *more, "--seed", 2, "--out", place / "o").code == 0
-    design.unlink()
-    return {kind: place / kind / "small one.pdf" for kind in "eo"}
+    """The report of an evaluation ("e") or of an optimisation ("o"), with its design gone."""
+    words = {"e": ["evaluate"], "o": ["optimise", "--seed", 2]}
+
+    @cache
+    def report(kind):
+        place = tmp_path_factory.mktemp("reports")
+        design = place / "small one.yaml"
+        design.write_text(SMALL)
+        more = ["--set", "load.mass=21 kg", "--date", "2025-01-02", "--json", "--report"]
+        assert run(*words[kind], design, *more, "--out", place / kind).code == 0
+        design.unlink()
+        return place / kind / "small one.pdf"
+
+    return report
 
 
 def changed(tmp_path, source, change, name="x.pdf"):
@@ -45,7 +51,7 @@ def changed(tmp_path, source, change, name="x.pdf"):
 @pytest.mark.parametrize("kind", ["e", pytest.param("o", marks=pytest.mark.long)])
 def test_a_report_repeats_to_the_byte(reports, tmp_path, kind):
     """The same numbers, the same PDF, and JSON as the command's own with `rerun`."""
-    result = run("rerun", reports[kind], "--json", "--out", tmp_path)
+    result = run("rerun", reports(kind), "--json", "--out", tmp_path)
     assert (result.code, result.err) == (0, "")
     data = result.json
     assert data["rerun"]["repeats"] is True
@@ -53,24 +59,24 @@ def test_a_report_repeats_to_the_byte(reports, tmp_path, kind):
     assert "the result is reproduced" in data["rerun"]["outcome"]
     assert "--set 'load.mass=21 kg'" in data["rerun"]["command"]
     assert ("kkt" in data) == (kind == "o")
-    assert digest(tmp_path / "small one.pdf") == digest(reports[kind])
-    told = run("rerun", reports[kind])
+    assert digest(tmp_path / "small one.pdf") == digest(reports(kind))
+    told = run("rerun", reports(kind))
     assert told.err.endswith("the version of this installation\n")
-    assert run("rerun", reports[kind], "--quiet").out == ""
+    assert run("rerun", reports(kind), "--quiet").out == ""
 
 
 def test_it_never_writes_over_what_it_reads(reports):
     """The report itself is no place for the new one; without --out nothing is written."""
-    before = digest(reports["e"])
-    refused = run("rerun", reports["e"], "--out", reports["e"].parent, "--json")
+    before = digest(reports("e"))
+    refused = run("rerun", reports("e"), "--out", reports("e").parent, "--json")
     assert refused.code == 3
     assert "is an input and would be overwritten" in refused.errors[0]["message"]
-    assert digest(reports["e"]) == before
+    assert digest(reports("e")) == before
 
 
 def test_what_differs_is_named(reports, tmp_path):
     """A result that is not the same: which numbers, by how much, which version; exit 1."""
-    with_other = _tampered(tmp_path, reports["e"], lambda run: run["result"]["metrics"].update(
+    with_other = _tampered(tmp_path, reports("e"), lambda run: run["result"]["metrics"].update(
         mass=run["result"]["metrics"]["mass"] * 1.01, push_force=None))  # fmt: skip
     result = run("rerun", with_other, "--json")
     assert result.code == 1
@@ -78,9 +84,9 @@ def test_what_differs_is_named(reports, tmp_path):
     assert inside["repeats"] is False
     assert set(inside["differences"]) == {"mass", "push_force"}
     assert "mass -0.99 %" in inside["outcome"]
-    older = _tampered(tmp_path, reports["e"], lambda run: run.update(actuator_opt="0.1.0"))
+    older = _tampered(tmp_path, reports("e"), lambda run: run.update(actuator_opt="0.1.0"))
     assert "made by actuator-opt 0.1.0" in run("rerun", older).err
-    bare = _tampered(tmp_path, reports["e"], lambda run: run.pop("result"))
+    bare = _tampered(tmp_path, reports("e"), lambda run: run.pop("result"))
     assert run("rerun", bare, "--json").json["rerun"]["repeats"] is True  # by its hash
     lost = _tampered(tmp_path, bare, lambda run: run.update(spec_hash="0"))
     assert run("rerun", lost, "--json").json["rerun"]["repeats"] is None
@@ -159,7 +165,7 @@ def test_faults_of_the_input_keep_their_place(tmp_path):
 
 def test_files_that_are_no_report(reports, tmp_path):
     """Foreign, cut off, damaged, not there, a folder, two in one."""
-    data = reports["e"].read_bytes()
+    data = reports("e").read_bytes()
     at = data.index(b"application#2Fyaml")
     begin = data.index(b"stream", at) + 8
     cases = {
@@ -194,7 +200,7 @@ def test_other_programs_may_have_saved_it(reports, tmp_path):
     """Saved again by another library it still runs; with a password it is said to be encrypted."""
     pypdf = pytest.importorskip("pypdf")
     for password, words in ((None, None), ("secret", "is encrypted")):
-        writer = pypdf.PdfWriter(clone_from=reports["e"])
+        writer = pypdf.PdfWriter(clone_from=reports("e"))
         if password:
             writer.encrypt(password, algorithm="RC4-128")
         path = tmp_path / "saved.pdf"
@@ -209,7 +215,7 @@ def test_other_programs_may_have_saved_it(reports, tmp_path):
 @given(st.data())
 def test_no_damage_leads_to_a_traceback(reports, data):
     """Any bytes changed or lost: read to the letter, or refused with a sentence."""
-    whole = reports["e"].read_bytes()
+    whole = reports("e").read_bytes()
     sound = embed.extract(whole, KINDS)
     around = [begin - 200 for _, begin in embed.streams(whole)]
     near = data.draw(st.sampled_from(around)) + data.draw(st.integers(-50, 2500))

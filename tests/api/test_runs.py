@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from cases.digests import digests
-from cli_runner import KNEE, PLIES, bench, command, run, surroundings
+from cli_runner import PLIES, bench, command, run, surroundings
 
 import actuator_opt as ao
 from actuator_opt.base import runs as run_store
@@ -22,6 +22,7 @@ from actuator_opt.optimisation.run import optimise as solver_entry
 from actuator_opt.pages.trust import convergence_figure
 from actuator_opt.rendering.ink import Ink
 
+pytestmark = pytest.mark.usefixtures("searched_once")
 WALL = "  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n"
 SMALL = bench((WALL, ""), *PLIES)
 
@@ -85,7 +86,7 @@ def test_its_report_is_the_report_of_the_command(folder, design, tmp_path, optio
     made, again = tmp_path / "made", tmp_path / "again"
     optimised(design, "--starts", 1, "--report", "--out", made, *options)
     design.unlink()
-    monkeypatch.setattr("actuator_opt.optimisation.run.solve", None)
+    monkeypatch.setattr("actuator_opt.optimisation.run.optimise", None)
     result = run("report", "last", "--out", again)
     assert result.code == 0, result.err
     assert digests(made) == digests(again)
@@ -382,16 +383,16 @@ def test_a_maximised_objective_is_traced_as_it_is_stated():
     text = SMALL.replace("minimise: mass", "maximise: stiffness_min").replace(
         "requirements:", "requirements:\n  mass:\n    max: 1 kg"
     )
-    found = ao.optimise(ao.read(text), prices=False)
+    found = ao.optimise(ao.read(text), prices=False, starts=2)
     assert found.trace[-1][1] == pytest.approx(found.objective_value, rel=1e-5)
     assert found.objective_value > 0
     assert solver_entry is not None
 
 
-def test_interrupted_or_not_the_command_ends_as_before(folder, tmp_path):
+def test_interrupted_or_not_the_command_ends_as_before(folder, design):
     """A process of its own leaves a record and prints no word of it under --json."""
     done = subprocess.run(
-        command("optimise", KNEE, "--json"), capture_output=True, text=True, timeout=60,
+        command("optimise", design, "--json"), capture_output=True, text=True, timeout=60,
         check=False, env=surroundings(ACTUATOR_OPT_RUNS=str(folder)),
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")

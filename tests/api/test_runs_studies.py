@@ -141,7 +141,9 @@ def test_the_record_of_a_large_sweep_stays_small(folder, design, monkeypatch):
     assert len(run("runs", "show", "last").out) < 3000
 
 
-@pytest.mark.parametrize("more", [[], ["--figure", "scatter"]])
+@pytest.mark.parametrize(
+    "more", [pytest.param([], marks=pytest.mark.long), ["--figure", "scatter"]]
+)
 def test_a_sweep_is_reported_out_of_its_store(folder, design, tmp_path, more, monkeypatch):
     """Figures and CSV to the byte, the design file gone, nothing computed or written."""
     made, again, store = tmp_path / "made", tmp_path / "again", tmp_path / "rows.db"
@@ -161,7 +163,7 @@ def test_a_sweep_is_reported_out_of_its_store(folder, design, tmp_path, more, mo
     assert digest(store) == before
 
 
-@pytest.mark.parametrize("method", ["grid", "sobol", "lhs"])
+@pytest.mark.parametrize("method", ["grid", "sobol", pytest.param("lhs", marks=pytest.mark.long)])
 @pytest.mark.parametrize("texts", [[], ["rod.material=steel_42crmo4,ti_6al4v"]])
 def test_values_of_the_best_are_those_of_their_points(design, method, texts):
     """Out of their rows as out of the plan, in the order asked for, to the last digit."""
@@ -355,7 +357,7 @@ def test_a_sweep_by_an_own_metric(folder, design, tmp_path):
     assert run("report", "last", "--out", tmp_path, "--plugin", plugin).code == 0
 
 
-@pytest.mark.parametrize("kind", ["file", "device"])
+@pytest.mark.parametrize("kind", ["file", pytest.param("device", marks=pytest.mark.long)])
 def test_no_record_costs_no_result(tmp_path, design, kind):
     """Standard error says why, standard output and the exit status stay; --no-record is silent."""
     (tmp_path / "file").write_text("")

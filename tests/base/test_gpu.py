@@ -105,7 +105,9 @@ def test_a_shipped_design_in_batches(folder, monkeypatch):
     assert gpu.values(made, points[:0]).shape == (0, len(made.outputs))
 
 
-@pytest.mark.parametrize("design", ["knee_bonded.yaml", "steel_baseline.yaml"])
+@pytest.mark.parametrize(
+    "design", [pytest.param("knee_bonded.yaml", marks=pytest.mark.long), "steel_baseline.yaml"]
+)
 def test_a_sweep_has_the_same_rows_and_store(design, device, tmp_path, monkeypatch):
     """All numbers of the CSV agree to 1e-12; the processor reads the GPU's rows from the store."""
     monkeypatch.setattr(chunk, "RECORDED_FROM", 1)

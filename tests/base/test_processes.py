@@ -70,7 +70,7 @@ def test_workers_end_with_a_killed_parent():
         assert until(lambda: not group(process.pid), 10)
 
 
-@pytest.mark.parametrize("delay", [0.004, 0.02])
+@pytest.mark.parametrize("delay", [pytest.param(0.004, marks=pytest.mark.long), 0.02])
 def test_an_interrupt_while_workers_begin(delay):
     """Ctrl-C reaches the whole group: workers that are just beginning leave it to their parent."""
     with sweeping(workers=1) as process:

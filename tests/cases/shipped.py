@@ -1,4 +1,4 @@
-"""Optima of shipped designs, solved once in a process for all tests that only read them."""
+"""Shipped designs, evaluated and solved once in a process for all tests that only read them."""
 
 from __future__ import annotations
 
@@ -36,6 +36,12 @@ SLEEVE = (
 
 PLAIN_KNEE = KNEE.replace(SLEEVE[0], "").replace(SLEEVE[1], "")
 """The knee with plugs screwed into a liner of one thickness."""
+
+
+@cache
+def evaluated(name: str) -> ao.Evaluation:
+    """The evaluation of a shipped design."""
+    return ao.evaluate(DESIGNS / f"{name}.yaml")
 
 
 @cache

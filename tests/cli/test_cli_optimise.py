@@ -83,7 +83,11 @@ def test_the_saved_design_repeats_the_optimum(tmp_path):
 @pytest.mark.parametrize(
     ("objective", "better"),
     [
-        ("maximise: stiffness_min", lambda d, b: d["stiffness_min"] >= b["stiffness_min"]),
+        pytest.param(
+            "maximise: stiffness_min",
+            lambda d, b: d["stiffness_min"] >= b["stiffness_min"],
+            marks=pytest.mark.long,
+        ),
         pytest.param(
             "minimise: friction_running",
             lambda d, b: d["friction_running"] <= b["friction_running"] * (1 + 1e-9),
@@ -96,7 +100,6 @@ def test_the_saved_design_repeats_the_optimum(tmp_path):
         pytest.param(
             "maximise:\n    stiffness_min: 1\n    burst_factor: 0.5",
             lambda d, b: d["stiffness_min"] >= b["stiffness_min"] * (1 - 1e-6),
-            marks=pytest.mark.long,
         ),
     ],
 )
@@ -207,7 +210,15 @@ def test_the_least_bad_point_may_contradict_itself():
     assert with_values(design, thick, contradictions=False).rod.outer_diameter == 0.0215
 
 
-@pytest.mark.parametrize("name", ["ld_slsqp", "LD_MMA", "LN_COBYLA", "AUGLAG+LD_LBFGS"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "ld_slsqp",
+        pytest.param("LD_MMA", marks=pytest.mark.long),
+        pytest.param("LN_COBYLA", marks=pytest.mark.long),
+        "AUGLAG+LD_LBFGS",
+    ],
+)
 def test_algorithms(name, plain):
     """Algorithms that suit the problem find the same optimum."""
     value = optimised(BENCH, "--algorithm", name)["objective"]["value"]

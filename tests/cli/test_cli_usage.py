@@ -34,7 +34,16 @@ def test_help_explains_everything(words):
             raise AssertionError(f"no explanation: {line}")
 
 
-@pytest.mark.parametrize("verb", [verb for verb in VERBS if verb != "optimize"])
+@pytest.mark.parametrize(
+    "verb",
+    [
+        "check",
+        "evaluate",
+        "optimise",
+        pytest.param("sensitivity", marks=pytest.mark.long),
+        "report",
+    ],
+)
 def test_design_verbs_share_their_options(verb, tmp_path):
     """All design verbs take --set, --out, --seed, --json, --quiet and --plugin (contract)."""
     plugin = tmp_path / "own.py"
@@ -136,10 +145,10 @@ def test_check_of_several_files(tmp_path):
     ("name", "file", "title"),
     [
         ("arm", "arm.yaml", "arm"),
-        ("arm.yaml", "arm.yaml", "arm"),
+        pytest.param("arm.yaml", "arm.yaml", "arm", marks=pytest.mark.long),
         ("left knee: α", "left_knee_α.yaml", "left knee: α"),
         ("legs/left", "legs/left.yaml", "left"),
-        ("7.5 kN", "7.5_kN.yaml", "7.5 kN"),
+        pytest.param("7.5 kN", "7.5_kN.yaml", "7.5 kN", marks=pytest.mark.long),
         ("?!", "actuator.yaml", "?!"),
     ],
 )

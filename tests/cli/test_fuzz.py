@@ -16,7 +16,9 @@ from actuator_opt.cli import streams
 COUNT, SEED, PARTS = int(os.environ.get("FUZZ_COUNT", "240")), 20, 8
 
 
-@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize(
+    "part", [*range(3), *(pytest.param(x, marks=pytest.mark.long) for x in range(3, PARTS))]
+)
 def test_inputs(part, tmp_path):
     """Every input of the seed is answered, or refused in words."""
     failed = {}

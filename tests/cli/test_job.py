@@ -118,7 +118,7 @@ def _front(**paper):
 
 def _uncertainty(**paper):
     actuator = ao.read("bench.yaml")
-    study = ao.uncertainty(actuator, count=100, rows=8)
+    study = ao.uncertainty(actuator, count=40, rows=4)
     return ao.report(study, actuator=actuator, **paper)
 
 
@@ -128,7 +128,7 @@ def _comparison(folder, **_):
 
 def _seal(**paper):
     actuator = ao.read("bench.yaml")
-    study = ao.seal(actuator, place="rod", curves=True, mapped=True)
+    study = ao.seal(actuator, place="rod", curves=True)
     return ao.report(study, actuator=actuator, **paper)
 
 
@@ -182,10 +182,10 @@ CASES = {
     "ParetoFront": (_front, [*PARETO, "--report"]),
     "Uncertainty": (
         _uncertainty,
-        ["uncertainty", "bench.yaml", "-n", "100", "--index-rows", "8", "--report"],
+        ["uncertainty", "bench.yaml", "-n", "40", "--index-rows", "4", "--report"],
     ),
     "Comparison": (_comparison, ["compare", "bench.yaml", KNEE]),
-    "SealStudy": (_seal, ["seal", "bench.yaml", "--seal", "rod", "--map", "--report"]),
+    "SealStudy": (_seal, ["seal", "bench.yaml", "--seal", "rod", "--report"]),
     "Simulation": (_simulation, ["simulate", SCENARIO, "--sensitivity", "--report"]),
     "Compared": (_compared, ["simulate", SCENARIO, "--measured", "record.csv", "--report"]),
     "Identification": (_identification, ["identify", RECORD, "--design", KNEE, "--report"]),
@@ -224,6 +224,9 @@ def _reported():
                 "Prices",
                 "Identification",
                 "Run",
+                "SealStudy",
+                "Uncertainty",
+                "Comparison",
             )
             yield pytest.param(name, marks=[pytest.mark.long] if slow else [])
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from report_fixture import published_tables
+from shipped import evaluated, shipped
 
 from actuator_opt import api as verbs
 from actuator_opt.api.reports import REPLICAS, published as published_blocks
@@ -36,14 +37,14 @@ STEMS = [path.stem for path in ALL]
 
 @pytest.fixture(scope="module")
 def optima() -> dict[str, Optimisation]:
-    """Shipped designs with variables and without choices, optimised from few starts.
+    """Shipped designs with variables and without choices, optimised from two starts.
 
     Those with duty cycles take longer: `test_walking_designs`.
     """
     return {
-        path.stem: verbs.optimise(actuator, starts=2, prices=False)
+        path.stem: shipped(path.stem)
         for path in ALL
-        if (design := (actuator := verbs.read(path)).design).variables
+        if (design := verbs.read(path).design).variables
         and not design.choices
         and design.duty is None
     }
@@ -60,7 +61,7 @@ def test_a_shipped_design_has_no_faults(path) -> None:
 )
 def test_a_shipped_design_evaluates_to_finite_numbers(path) -> None:
     """Every metric is finite or says why not; nothing in the JSON object is NaN or infinite."""
-    evaluation = verbs.evaluate(path)
+    evaluation = evaluated(path.stem)
     for metric in evaluation.metrics.values():
         if metric.value is None:
             assert metric.why, metric.name
@@ -71,8 +72,8 @@ def test_a_shipped_design_evaluates_to_finite_numbers(path) -> None:
 
 def test_the_designs_of_the_main_job_are_there(optima) -> None:
     """The knee, its steel baseline and two papers' cylinders are shipped; two have variables."""
-    shipped = {"knee_bonded", "steel_baseline", "elasswad_knee", "aalto_40_25_220"}
-    assert shipped <= {path.stem for path in ALL}
+    stems = {"knee_bonded", "steel_baseline", "elasswad_knee", "aalto_40_25_220"}
+    assert stems <= {path.stem for path in ALL}
     assert {"knee_bonded", "steel_baseline"} <= set(optima)
 
 

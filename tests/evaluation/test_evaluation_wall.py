@@ -296,7 +296,16 @@ def test_gradients_of_the_wall_are_those_of_differences(tmp_path):
 
 @pytest.mark.parametrize("stop", ["internal", "external"])
 @pytest.mark.parametrize("mount", ["cap_clevis", "head_flange"])
-@pytest.mark.parametrize("path", ["rod.outer_diameter", "cylinder.bore", "supply.pressure"])
+@pytest.mark.parametrize(
+    "path",
+    [
+        "cylinder.bore",
+        *(
+            pytest.param(x, marks=pytest.mark.long)
+            for x in ("rod.outer_diameter", "supply.pressure")
+        ),
+    ],
+)
 def test_many_designs_are_each_alone(stop, mount, path):
     """Whichever number varies, and whichever area the stall pressure acts on."""
     changes = {"cylinder.end_stop": stop, "cylinder.mount": mount}

@@ -42,6 +42,12 @@ def store(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
+def found(store):
+    """Its rows as they are read."""
+    return explored(store)
+
+
+@pytest.fixture(scope="module")
 def text(store, tmp_path_factory):
     """The page."""
     return ao.explore(store, out=tmp_path_factory.mktemp("page"))[0].path.read_text("utf-8")
@@ -90,9 +96,9 @@ def test_the_page_stands_alone(text):
     assert "default-src 'none'" in text
 
 
-def test_columns_are_the_rows_of_the_database(store, text):
+def test_columns_are_the_rows_of_the_database(found, text):
     """Every number in its display unit, to the last bit of a float32."""
-    data, found = data_of(text), explored(store)
+    data = data_of(text)
     assert data["rows"] == len(found.numbers) == 96
     study = found.study
     for column in data["columns"]:
@@ -104,9 +110,8 @@ def test_columns_are_the_rows_of_the_database(store, text):
         np.testing.assert_array_equal(told, np.broadcast_to(expected, 96).astype("<f4"))
 
 
-def test_margins_of_the_limits_are_those_of_the_sweep(store):
+def test_margins_of_the_limits_are_those_of_the_sweep(found):
     """The least of all margins is the row's, the limit it belongs to is the row's worst."""
-    found = explored(store)
     np.testing.assert_array_equal(found.margins.min(axis=0), found.numbers[:, -3])
     names = [limit.name for limit in found.limits]
     worst = [found.study.limits[int(k)] for k in found.numbers[:, -2]]
@@ -114,9 +119,9 @@ def test_margins_of_the_limits_are_those_of_the_sweep(store):
 
 
 @pytest.mark.parametrize("row", [0, 17, 50, 95])
-def test_a_command_gives_its_row(store, text, row):
+def test_a_command_gives_its_row(found, text, row):
     """The design of the command has the metrics, margins and outlines of its row."""
-    data, found = data_of(text), explored(store)
+    data = data_of(text)
     words = command_of(data, row)
     assert words[:2] == ["actuator-opt", "report"]
     pairs = dict(word.split("=", 1) for word in words[4::2])

@@ -217,7 +217,15 @@ def test_the_file_is_cpp_too(tmp_path):
     for name, content in design_files(subject, stem="40 µ", program="p", date=None).items():
         (tmp_path / name).write_bytes(content)
     for standard in ("c++98", "c++20"):
-        command = ["g++", "-x", "c++", f"-std={standard}", *WARNINGS, "-c", "design_40.c"]
+        command = [
+            "g++",
+            "-x",
+            "c++",
+            f"-std={standard}",
+            *WARNINGS,
+            "-fsyntax-only",
+            "design_40.c",
+        ]
         subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, timeout=300)
 
 

@@ -9,10 +9,12 @@ import subprocess
 import sys
 from functools import cache
 from itertools import combinations, pairwise
+from pathlib import Path
 
 import pytest
 from cli_runner import DESIGNS, bench, block
 from hypothesis import given, strategies as st
+from shipped import evaluated
 from test_export_step import EACH, FITTED_ROD, VARIANTS
 
 import actuator_opt as ao
@@ -25,7 +27,7 @@ fonts = pytest.importorskip("ezdxf.fonts.fonts")
 
 def drawn(source):
     """Evaluation and the document read back, which ezdxf finds no fault with."""
-    evaluation = ao.evaluate(source)
+    evaluation = evaluated(source.stem) if isinstance(source, Path) else ao.evaluate(source)
     content = dxf(evaluation, program="test")
     document = ezdxf.read(io.StringIO(content.decode("utf-8")))
     audit = document.audit()

@@ -9,7 +9,8 @@ from dataclasses import replace
 import pytest
 from cli_runner import bench
 from formula_reader import Workbook
-from test_export_step import SHIPPED
+from shipped import evaluated
+from test_export_step import EACH, SHIPPED
 
 import actuator_opt as ao
 from actuator_opt.exports.xlsx import xlsx
@@ -33,13 +34,10 @@ def rows_of(book, title):
     return {cell.value: cell.row for cell in book[title]["A"][4:] if cell.value}
 
 
-QUICK = [path for path in SHIPPED if path.stem != "huang_110_80_560"]  # its films take seconds
-
-
-@pytest.mark.parametrize("path", QUICK, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EACH, ids=lambda path: path.stem)
 def test_formulas_give_the_evaluations_margins(path):
     """Margin and verdict of every requirement and check, computed from the cells alone."""
-    evaluation = ao.evaluate(path)
+    evaluation = evaluated(path.stem)
     book = opened(evaluation)
     computed = Workbook(book)
     checks = [row for row in evaluation.checks if row.limit is not None and row.metric]
@@ -60,7 +58,7 @@ def test_formulas_give_the_evaluations_margins(path):
 
 def test_sheets_are_readable_on_paper():
     """One page wide, every word of the tables within its column, a font that is named."""
-    book = opened(ao.evaluate(SHIPPED[0]))
+    book = opened(evaluated(SHIPPED[0].stem))
     for sheet in book:
         assert sheet.sheet_properties.pageSetUpPr.fitToPage
         assert sheet.page_setup.fitToHeight == 0

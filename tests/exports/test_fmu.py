@@ -244,7 +244,11 @@ def test_a_scenario_alone_that_cannot_be_written(text, words, code, message, tmp
 
 @pytest.mark.parametrize(
     ("scenario", "design"),
-    [(SERVO, COURSE), (KNEE.parent / "scenarios/knee_step.yaml", KNEE), ("stops", COURSE)],
+    [
+        pytest.param(SERVO, COURSE, marks=pytest.mark.long),
+        (KNEE.parent / "scenarios/knee_step.yaml", KNEE),
+        ("stops", COURSE),
+    ],
 )
 def test_an_established_host(scenario, design, tmp_path):
     """FMPy finds no fault; its runs equal `simulate`, without any input and parameter set.
@@ -336,14 +340,14 @@ def test_the_spool_has_a_closed_form(tmp_path):
     ("name", "value", "text"),
     [
         ("initial.position", 0.15, "150 mm"),
-        ("initial.pressure_a", 2e6, "20 bar"),
+        pytest.param("initial.pressure_a", 2e6, "20 bar", marks=pytest.mark.long),
         ("initial.speed", 0.1, "0.1 m/s"),
         ("load.stiffness", 2e4, "20 N/mm"),
-        ("load.damping", 500.0, "500 N*s/m"),
-        ("friction.viscous", 200.0, "200 N*s/m"),
+        pytest.param("load.damping", 500.0, "500 N*s/m", marks=pytest.mark.long),
+        pytest.param("friction.viscous", 200.0, "200 N*s/m", marks=pytest.mark.long),
         ("load.force", 800.0, "800 N"),
         ("signal", -1.5, "-1.5 V"),
-        ("valve.offset", 0.1, "0.1 V"),
+        pytest.param("valve.offset", 0.1, "0.1 V", marks=pytest.mark.long),
         ("supply.return_pressure", 3e5, "3 bar"),
     ],
 )

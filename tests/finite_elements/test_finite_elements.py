@@ -241,6 +241,7 @@ def test_only_the_sum_of_the_constants_counts_in_plane_strain():
         assert a.peak_pressure == pytest.approx(b.peak_pressure, rel=3e-3)
 
 
+@pytest.mark.long
 def test_a_wide_ring_is_plane_and_a_narrow_one_is_not():
     """At a radius of 1000 sections the hoop does nothing; at 2 the groove also compresses it."""
     plane = ring(0.15, 0.5, around=32)

@@ -58,6 +58,7 @@ def solved(tmp_path_factory):
     return json.loads(result.out), path
 
 
+@pytest.mark.long
 def test_friction_by_elements_is_near_that_of_the_closed_form(solved):
     """Film, coefficient and breakaway of the knee's rod O-ring agree within 30 %."""
     found, _ = solved

@@ -137,7 +137,12 @@ METAL = shell_oracle.isotropic(71700, 0.33)
 
 
 @pytest.mark.parametrize(
-    ("inner", "liner", "winding"), [(16.0, 1.5, 0.0), (10.5, 0.6, 1.2), (10.5, 1.56, 2.48)]
+    ("inner", "liner", "winding"),
+    [
+        (16.0, 1.5, 0.0),
+        pytest.param(10.5, 0.6, 1.2, marks=pytest.mark.long),
+        (10.5, 1.56, 2.48),
+    ],
 )
 def test_clamp_against_finite_elements(inner, liner, winding):
     """Moment of a rigidly clamped wall, 0.2 mm from the clamp, within -20 and +25 %."""

@@ -79,6 +79,7 @@ def test_oracle_is_lame_to_rounding():
 
 @given(st.data())
 @SLOW
+@pytest.mark.long
 def test_oracle_is_converged(data):
     """Elements half as long change no stress of the oracle by more than 1e-10 of the largest."""
     layers, radius = data.draw(oracle.tubes(most=3))

@@ -302,7 +302,13 @@ FIGURES = (
 PATHS = ("cylinder.bore", "rod.outer_diameter", "load.mass", "lines[0].length", "supply.pressure")
 
 
-@pytest.mark.parametrize("end", list(ENDS))
+@pytest.mark.parametrize(
+    "end",
+    [
+        pytest.param(x, marks=[pytest.mark.long] if x in ("closed", "constant") else [])
+        for x in ENDS
+    ],
+)
 def test_gradients_of_every_figure(subject_of, end):
     """Complex step through a whole evaluation equals central differences, at every place."""
     subject = subject_of(end)

@@ -36,10 +36,10 @@ def complaints(**changes):
 @pytest.mark.parametrize(
     ("thick", "depth", "length", "winding"),
     [
-        (2.2, 0.55, 4.0, 0.0),
-        (2.2, 0.55, 9.0, 0.0),
+        pytest.param(2.2, 0.55, 4.0, 0.0, marks=pytest.mark.long),
+        pytest.param(2.2, 0.55, 9.0, 0.0, marks=pytest.mark.long),
         (2.2, 0.55, 6.0, 3.0),
-        (1.694, 0.406, 6.4, 0.0),  # the knee at its optimum
+        pytest.param(1.694, 0.406, 6.4, 0.0, marks=pytest.mark.long),  # the knee at its optimum
         (1.694, 0.406, 6.4, 2.76),
     ],
 )

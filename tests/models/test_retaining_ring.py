@@ -51,13 +51,13 @@ def test_ring_and_lip_by_the_worked_numbers():
 @pytest.mark.parametrize(
     ("thickness", "depth", "lip", "winding"),
     [
-        (2.6, 0.6, 2e-3, 0.0),
-        (2.6, 0.6, 4e-3, 1.5e-3),
+        pytest.param(2.6, 0.6, 2e-3, 0.0, marks=pytest.mark.long),
+        pytest.param(2.6, 0.6, 4e-3, 1.5e-3, marks=pytest.mark.long),
         (2.6, 0.6, 4e-3, 3e-3),
         (1.534, 0.396, 2e-3, 0.0),
-        (1.534, 0.396, 5.8e-3, 0.0),
+        pytest.param(1.534, 0.396, 5.8e-3, 0.0, marks=pytest.mark.long),
         (1.534, 0.396, 5.8e-3, 2.7e-3),
-        (1.534, 0.396, 8e-3, 0.0),
+        pytest.param(1.534, 0.396, 8e-3, 0.0, marks=pytest.mark.long),
     ],
 )
 def test_metal_under_the_groove_against_finite_elements(thickness, depth, lip, winding):

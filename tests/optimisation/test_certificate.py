@@ -34,6 +34,7 @@ ROUNDING = 1e-9
 
 
 LONG = {
+    "aerospace",
     "knee_bonded",
     "knee sized by strength",
     "knee of free pressure",
@@ -44,9 +45,9 @@ LONG = {
 """Slow cases; ``-m long`` runs them."""
 
 
-def marked(names):
-    """Names as parameters, those of `LONG` marked."""
-    marks = {name: [pytest.mark.long] if name in LONG else [] for name in names}
+def marked(names, long=frozenset()):
+    """Names as parameters, those of `LONG` and `long` marked."""
+    marks = {name: [pytest.mark.long] if name in LONG | long else [] for name in names}
     return [pytest.param(name, marks=found) for name, found in marks.items()]
 
 
@@ -147,7 +148,8 @@ def test_no_design_lies_below_the_bound(some):
 
 
 GAPS = {
-    "steel": (("steel_baseline", ("piston.material", "al_7075_t6")), 0.002),
+    "steel in short": (CASES["steel"], 0.12),
+    "steel": (CASES["steel"], 0.002),
     "knee_bonded": (("knee_bonded",), 0.16),
     "knee of 90 mm, sized by stiffness": (
         ("knee_bonded", ("cylinder.stroke", "90 mm"), ("requirements.stiffness_min.min", "12e6")),
@@ -170,15 +172,16 @@ bore, so that the bound of knee and 90 mm rests on looser limits.
 """
 
 
-@pytest.mark.parametrize("name", marked(GAPS))
+@pytest.mark.parametrize("name", marked(GAPS, long={"steel"}))
 def test_bound_and_gap(name):
     """The bound is below the optimum, closest on metal; every limit is covered or dropped.
 
-    On metal, twice the boxes close the gap; with fewer it depends on the machine's last bits.
+    On metal, twice the boxes close the gap; with fewer it depends on the machine's last bits. A
+    quarter of them leaves 9 %.
     """
     what, gap = GAPS[name]
     found = case(*what)
-    most = 2 * BOXES if name == "steel" else BOXES
+    most = {"steel": 2 * BOXES, "steel in short": BOXES // 4}.get(name, BOXES)
     relaxed, bound = certify(
         found.actuator, found.x, found.objective, seconds=math.inf, max_boxes=most
     )

@@ -42,6 +42,7 @@ def listed(lists, text=BENCH):
     return f"{text}choices:\n{lines}"
 
 
+@functools.cache
 def optimum(text, **options):
     """The optimisation of a design text, without prices."""
     return ao.optimise(ao.read(text), **({"prices": False, "starts": 2} | options))

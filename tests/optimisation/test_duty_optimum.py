@@ -33,6 +33,18 @@ def actuator() -> ao.Actuator:
     return ao.read(text + DUTY.replace("CYCLE", str(cycle)))
 
 
+@pytest.fixture(scope="module")
+def tight(actuator: ao.Actuator) -> ao.Actuator:
+    """The same held to 0.47 of its supply; the lightest without this limit needs 0.486."""
+    return actuator.changed({"requirements.duty_supply_share.max": 0.47})
+
+
+@pytest.fixture(scope="module")
+def held(tight: ao.Actuator) -> ao.Optimisation:
+    """Its optimum, from searches that see every sample."""
+    return ao.optimise(tight, starts=2)
+
+
 def test_recorded_models_equal_the_models(actuator: ao.Actuator) -> None:
     """Values and slopes of all rows agree, at points that other designs share or not."""
     problem = build(actuator.subject())
@@ -50,35 +62,32 @@ def test_recorded_models_equal_the_models(actuator: ao.Actuator) -> None:
     assert 2 <= len(few) <= 16
 
 
-def test_a_limit_over_time_binds_at_an_exact_optimum(actuator: ao.Actuator) -> None:
+def test_a_limit_over_time_binds_at_an_exact_optimum(held: ao.Optimisation) -> None:
     """The worst sample holds the optimum; no sample of the cycle breaks the limit there."""
-    limit = 0.47  # without this limit the lightest cylinder needs 0.486 of its supply
-    optimum = ao.optimise(actuator.changed({"requirements.duty_supply_share.max": limit}))
+    optimum = held
     assert optimum.status == "optimal"
     assert optimum.kkt is not None
     assert optimum.kkt.residual <= 1e-6
     assert any("duty_supply_share" in name for name in optimum.kkt.active)
     duty = optimum.evaluation.duty
     assert duty is not None
-    assert duty.cycles[0].traces["share"].max() == pytest.approx(limit, rel=1e-6)
+    assert duty.cycles[0].traces["share"].max() == pytest.approx(0.47, rel=1e-6)
     dear = [price for price in optimum.sensitivities if "duty_supply_share" in price.parameter]
     assert dear
 
 
 def test_a_search_that_begins_with_few_samples_finds_the_same(
-    actuator: ao.Actuator, monkeypatch: pytest.MonkeyPatch
+    tight: ao.Actuator, held: ao.Optimisation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A long record: the search begins with some samples, and its optimum holds for all."""
-    tight = actuator.changed({"requirements.duty_supply_share.max": 0.47})
-    whole = ao.optimise(tight, prices=False)
     monkeypatch.setattr(kernel, "MANY_SAMPLES", 100)
     monkeypatch.setattr(kernel, "FEW_SAMPLES", 24)
-    few = ao.optimise(tight, prices=False)
-    assert few.objective_value == pytest.approx(whole.objective_value, rel=1e-8)
+    few = ao.optimise(tight, starts=2, prices=False)
+    assert few.objective_value == pytest.approx(held.objective_value, rel=1e-8)
     assert few.kkt is not None
     assert few.kkt.residual <= 1e-6
-    assert len(few.starts) == len(whole.starts)
-    yields = [x.best_evaluation.yield_estimate.value for x in (few, whole)]
+    assert len(few.starts) == len(held.starts)
+    yields = [x.best_evaluation.yield_estimate.value for x in (few, held)]
     assert yields[0] == pytest.approx(yields[1], abs=0.05)  # of 500 draws, also of few samples
     duty = few.evaluation.duty
     assert duty is not None

@@ -18,7 +18,6 @@ LOCAL = [
     "AUGLAG_EQ+LD_MMA", "AUGLAG_EQ+LD_CCSAQ", "AUGLAG_EQ+LN_COBYLA", "slsqp", "ld_mma",
     "LD_AUGLAG", "LN_AUGLAG_EQ",
 ]  # fmt: skip
-GLOBAL = ["GN_ISRES", "GN_ORIG_DIRECT", "GN_ORIG_DIRECT_L", "GN_AGS"]
 
 
 def slow(*names):
@@ -26,9 +25,12 @@ def slow(*names):
     return [pytest.param(name, marks=pytest.mark.long) for name in names]
 
 
+GLOBAL = ["GN_ORIG_DIRECT", "GN_ORIG_DIRECT_L", *slow("GN_ISRES", "GN_AGS")]
+
+
 UNCONSTRAINED = [
     "LD_LBFGS", "LD_TNEWTON", "LD_VAR2", "LN_BOBYQA", "LN_SBPLX", "LN_NELDERMEAD", "LN_PRAXIS",
-    "GN_DIRECT", "GN_DIRECT_L", "GN_DIRECT_L_RAND", "GN_CRS2_LM", "GN_ESCH", "GD_STOGO",
+    "GN_DIRECT_L", *slow("GN_DIRECT", "GN_DIRECT_L_RAND"), "GN_CRS2_LM", "GN_ESCH", "GD_STOGO",
     "G_MLSL_LDS", "G_MLSL_LDS+LN_BOBYQA",
 ]  # fmt: skip
 

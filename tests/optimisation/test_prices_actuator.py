@@ -272,6 +272,7 @@ def test_a_price_table_takes_few_calls_of_the_model(monkeypatch):
     assert len(calls) < 44
 
 
+@pytest.mark.long
 def test_a_limit_of_zero_has_the_price_of_its_equal():
     """Stiffness divided by 10 kN/mm, less 1, at least 0: the price of stiffness by 10 kN/mm."""
 

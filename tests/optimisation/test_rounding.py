@@ -252,6 +252,7 @@ def simple():
     return optimum(two_layers())
 
 
+@pytest.mark.long
 def test_actuator_against_enumeration():
     """Every pair of ply counts with every bore of a fine scan: the lightest feasible is found.
 

@@ -42,6 +42,11 @@ SHOWN = {"%": 100.0, "ms": 1e3, "bar": 1e-5, "mm/s": 1e3, "kN/mm": 1e-6, "J": 1.
 """Shown over SI, by hand."""
 
 
+USUAL = ("step", "open", "pump line", "closed", "motor", "bench")
+"""Kinds of runs that between them have every signal, figure and table."""
+EACH = [x if x in USUAL else pytest.param(x, marks=pytest.mark.long) for x in case.KINDS]
+
+
 def paged(kind, **more):
     """The page of a kind of run."""
     return subject.page(case.simulated(kind), **more)
@@ -119,7 +124,7 @@ def titles(kind):
 # ---- numbers ----
 
 
-@pytest.mark.parametrize("kind", case.KINDS)
+@pytest.mark.parametrize("kind", EACH)
 def test_results_are_those_of_the_json(kind):
     """Value, unit, limit and margin of every result that has a value or a limit."""
     found = case.simulated(kind).to_dict()
@@ -210,7 +215,7 @@ def test_expected_reasons_are_left_out():
 LEAKED = "leakage across the piston"
 
 
-@pytest.mark.parametrize("kind", case.KINDS)
+@pytest.mark.parametrize("kind", EACH)
 def test_shares_add_up(kind):
     """What came in less what went out is what the balance does not close, small ones included."""
     found = case.simulated(kind)
@@ -241,7 +246,7 @@ UNTOLD = {"stroke": {"load"}}
 """Doors through which more goes than the signals tell: the machine outside moves the rod."""
 
 
-@pytest.mark.parametrize("kind", case.KINDS)
+@pytest.mark.parametrize("kind", EACH)
 def test_energies_over_time_end_at_their_doors(kind):
     """Every power that the signals tell comes to its door; the curves that are left are these."""
     found = case.simulated(kind)
@@ -280,7 +285,7 @@ def test_energies_that_powers_do_not_confirm_are_doubted():
 # ---- words ----
 
 
-@pytest.mark.parametrize("kind", case.KINDS)
+@pytest.mark.parametrize("kind", EACH)
 def test_no_words_are_lost_and_none_are_nan(kind):
     """Notes, remarks, events and the scenario's own words stand on page and terminal alike."""
     found = case.simulated(kind)
@@ -379,7 +384,7 @@ def test_many_events_are_counted():
 
 
 @pytest.mark.parametrize("height", [figures.LEAST, figures.MOST])
-@pytest.mark.parametrize("kind", case.KINDS)
+@pytest.mark.parametrize("kind", EACH)
 def test_nothing_written_collides(kind, height):
     """No two texts overlap, all stay on the paper, and so does every line."""
     found = case.simulated(kind)
@@ -391,7 +396,7 @@ def test_nothing_written_collides(kind, height):
     assert ink.height == height
 
 
-@pytest.mark.parametrize("kind", case.KINDS)
+@pytest.mark.parametrize("kind", EACH)
 def test_figures_stand_alone(kind):
     """Every panel fits its own paper too; the signals hold all strips."""
     made = alone(kind)
@@ -404,7 +409,7 @@ def test_figures_stand_alone(kind):
 
 def test_panels_follow_the_signals():
     """What a run has decides what is drawn of it."""
-    names = {kind: set(alone(kind)) for kind in case.KINDS}
+    names = {kind: set(alone(kind)) for kind in ("step", "closed", "bench", "motor")}
     assert {"step", "energy", "energy_time", "friction"} <= names["step"]
     assert {"stiffness", "cycles"} <= names["closed"]
     assert "step" not in names["closed"]
@@ -562,7 +567,7 @@ def test_what_cannot_be_compared_says_why(runs, columns, words):
 # ---- documents ----
 
 
-@pytest.mark.parametrize("kind", case.KINDS)
+@pytest.mark.parametrize("kind", EACH)
 def test_a_run_makes_one_sheet(kind, tmp_path):
     """One A4 sheet as PDF and PNG, and one with the values of the equations; the source inside."""
     found = case.simulated(kind)
@@ -648,15 +653,16 @@ def test_the_plain_renderer_draws_it_too(tmp_path, no_typst):
 # ---- terminal ----
 
 
-@pytest.mark.parametrize("width", [40, 80, 140])
-def test_the_terminal_keeps_its_width(width):
+@pytest.mark.parametrize("kind", EACH)
+def test_the_terminal_keeps_its_width(kind):
     """No line is longer than the terminal, also in plain ASCII."""
-    for unicode in (True, False):
-        for text in [shown(paged(kind), width, unicode) for kind in case.KINDS]:
-            assert max(map(len, text.splitlines())) <= width, text
-            assert "\\u" not in text
-            assert "\\x" not in text
-            assert unicode or text.isascii()
+    page = paged(kind)
+    for width, unicode in itertools.product((40, 80, 140), (True, False)):
+        text = shown(page, width, unicode)
+        assert max(map(len, text.splitlines())) <= width, text
+        assert "\\u" not in text
+        assert "\\x" not in text
+        assert unicode or text.isascii()
 
 
 def test_the_terminal_shows_the_numbers_of_the_page():
@@ -681,7 +687,7 @@ def test_the_terminal_shows_the_numbers_of_the_page():
 # ---- CSV ----
 
 
-@pytest.mark.parametrize("kind", case.KINDS)
+@pytest.mark.parametrize("kind", EACH)
 def test_the_csv_holds_every_signal_on_an_even_grid(kind, tmp_path):
     """Header with units, even times each once, values as the signals have them."""
     found = case.simulated(kind)

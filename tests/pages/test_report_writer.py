@@ -58,6 +58,13 @@ def test_same_input_same_bytes_in_any_process(tmp_path, date):
     assert printed[0].splitlines()[0].startswith("r.pdf ")
 
 
+def test_a_page_compiled_again_has_the_same_bytes(tmp_path, monkeypatch):
+    """Other tests compile equal pages only once."""
+    monkeypatch.setattr(paper, "sheets", paper.sheets.__wrapped__)
+    first, second = (write(fixture.build_evaluation(), tmp_path / name) for name in "ab")
+    assert [file.sha256 for file in first] == [file.sha256 for file in second]
+
+
 def test_files_and_pages(tmp_path):
     """PDF first with its page count, one PNG per sheet, hashes as written, nothing else."""
     files = write(fixture.build_optimisation(), tmp_path / "new" / "folder")

@@ -8,11 +8,12 @@ import ast
 import io
 import re
 import tokenize
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 
 import pytest
+from cases.sources import parsed
 
 ROOT = Path(__file__).resolve().parents[2] / "actuator_opt"
 
@@ -101,16 +102,9 @@ def modules() -> list[Path]:
     return [path for name in PACKAGES for path in sorted((ROOT / name).rglob("*.py"))]
 
 
-@cache
-def parsed(path: Path) -> tuple[str, ast.Module]:
-    """Source and syntax tree of a module."""
-    source = path.read_text(encoding="utf-8")
-    return source, ast.parse(source)
-
-
-def docstrings(tree: ast.Module) -> list[ast.Constant]:
+def docstrings(nodes: Sequence[ast.AST]) -> list[ast.Constant]:
     """Docstrings of module, classes, functions and attributes."""
-    bodies = [getattr(node, "body", None) for node in ast.walk(tree)]
+    bodies = [getattr(node, "body", None) for node in nodes]
     return [
         statement.value
         for body in bodies
@@ -133,21 +127,21 @@ def is_message(text: str) -> bool:
     return len(WORD.findall(text)) >= 2 and " " in text.strip()
 
 
-def messages(source: str, tree: ast.Module) -> Iterator[tuple[int, str]]:
+def messages(source: str, nodes: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:
     """Line and text of user-facing literals; a formatted value becomes ``{}``.
 
     Keys, raw strings (regular expressions), SQL and docstrings are left out.
     """
     lines = source.encode().split(b"\n")  # `ast.get_source_segment` splits the source each time
-    skipped = {id(node) for node in docstrings(tree)}
-    for node in ast.walk(tree):
+    skipped = {id(node) for node in docstrings(nodes)}
+    for node in nodes:
         if isinstance(node, ast.Dict):
             skipped |= {id(key) for key in node.keys if isinstance(key, ast.Constant)}
         elif isinstance(node, ast.Subscript):
             skipped.add(id(node.slice))
         elif isinstance(node, ast.JoinedStr):
             skipped |= {id(part) for part in ast.walk(node) if part is not node}
-    for node in ast.walk(tree):
+    for node in nodes:
         if id(node) in skipped:
             continue
         if isinstance(node, ast.JoinedStr):
@@ -164,9 +158,12 @@ def messages(source: str, tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 
 @cache
-def messages_of(path: Path) -> list[tuple[int, str]]:
-    """Line and text of the messages of a module."""
-    return list(messages(*parsed(path)))
+def texts_of(path: Path) -> tuple[list[tuple[int, str]], list[tuple[int, str]]]:
+    """Line and text of the docstrings of a module, and of its messages."""
+    source, tree = parsed(path)
+    nodes = list(ast.walk(tree))
+    said = [(node.lineno, spoken(str(node.value))) for node in docstrings(nodes)]
+    return said, list(messages(source, nodes))
 
 
 def comments(source: str) -> Iterator[tuple[int, str]]:
@@ -193,18 +190,18 @@ def summary(text: str) -> str:
 
 def of_module(path: Path) -> list[str]:
     """All faults of the English of a module."""
-    source, tree = parsed(path)
+    source = path.read_text(encoding="utf-8")
+    said_of_module, shown = texts_of(path)
     found = []
-    for node in docstrings(tree):
-        text = spoken(str(node.value))
+    for line, text in said_of_module:
         said = [*faults(text, BANNED), *faults(text.strip(), RIDDLES)]
         longest = max(len(WORD.findall(part)) for part in re.split(r"[.;:] ", summary(text)))
         if longest > MOST_WORDS:
             said.append(f'{longest} words in a sentence of "{summary(text)[:60]}": split it')
-        found += [(node.lineno, fault) for fault in said]
+        found += [(line, fault) for fault in said]
     hashed = (line[line.index("#") :] for line in source.splitlines() if "#" in line)
     suspect = any(fault for text in hashed for fault in faults(text, BANNED))
-    for line, text in [*messages_of(path), *(comments(source) if suspect else ())]:
+    for line, text in [*shown, *(comments(source) if suspect else ())]:
         found += [(line, fault) for fault in faults(text, BANNED)]
     return [f"{path.relative_to(ROOT)}:{line}: {fault}" for line, fault in sorted(found)]
 
@@ -220,8 +217,7 @@ def test_allowed_texts_exist() -> None:
     """Every excuse is still needed."""
     texts = set()
     for path in modules():
-        texts |= {text for _, text in messages_of(path)}
-        texts |= {spoken(str(node.value)) for node in docstrings(parsed(path)[1])}
+        texts |= {text for part in texts_of(path) for _, text in part}
     assert set(ALLOWED) <= texts
     assert all(len(reason.split()) > 2 for reason in ALLOWED.values())
 

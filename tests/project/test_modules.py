@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import ast
 import re
-from functools import cache
 from pathlib import Path
 
 import pytest
+from cases.sources import parsed
 from model_samples import public_functions
 
 import actuator_opt
@@ -19,14 +19,13 @@ SCRIPTS = [*ROOT.glob("designs/scripts/*.py"), *ROOT.glob("reports/*.py")]
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
 
-@cache
 def modules():
     """Syntax tree of every module of the package, by its dotted name."""
     found = {}
     for path in sorted((ROOT / "actuator_opt").rglob("*.py")):
         parts = path.relative_to(ROOT).with_suffix("").parts
         name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
-        found[name] = (ast.parse(path.read_text("utf-8")), path.name == "__init__.py")
+        found[name] = (parsed(path)[1], path.name == "__init__.py")
     return found
 
 

@@ -69,7 +69,10 @@ def with_gains(name: str, gains: ControllerGains, **control) -> Simulation:
 # ---- every file ----
 
 
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(x, marks=[pytest.mark.long] if x == "course_open_loop" else []) for x in ALL],
+)
 def test_a_scenario_of_the_course_adds_up(name) -> None:
     """Requirements met, mass and energy kept, a second integrator agrees."""
     one = simulate(SCENARIOS / f"{name}.yaml", verify=True)

@@ -82,6 +82,7 @@ def test_without_the_rules_it_is_the_knee_as_shipped(numbers) -> None:
     assert numbers["before"]["mass"] == pytest.approx(shipped_mass("knee_bonded"), rel=1e-6)
 
 
+@pytest.mark.long
 def test_narrower_than_the_least_is_no_knee() -> None:
     """Half a millimetre less than the least width: infeasible."""
     found = carried(REPORT)["least"]

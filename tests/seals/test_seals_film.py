@@ -135,7 +135,10 @@ CASES = {  # driven, p_B driving, p_B on the way back, direction of the rod
 }
 
 
-@pytest.mark.parametrize("kind", list(KINDS))
+@pytest.mark.parametrize(
+    "kind",
+    [pytest.param(x, marks=[pytest.mark.long] if x == "compact" else []) for x in KINDS],
+)
 def test_rod_film_is_the_solved_one(kind):
     """Friction, thickness, double-stroke leakage and breakaway of a rod seal of each type."""
     lubed = metrics(f"{O_RING}, count: 1", f"{KINDS[kind]}, friction: film")

@@ -7,6 +7,7 @@ import json
 import math
 import re
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -1007,6 +1008,7 @@ def test_odd_changes_of_the_design(shelf, changes):
 # --- the schema
 
 
+@cache
 def checker():
     """The schema as an editor applies it."""
     jsonschema = pytest.importorskip("jsonschema")

@@ -345,7 +345,9 @@ def test_default_tolerances_are_close(case):
     assert max(found.values()) < 1e-4, found
 
 
-@pytest.mark.parametrize("case", [saturated, fixed_pump, motor])
+@pytest.mark.parametrize(
+    "case", [pytest.param(saturated, marks=pytest.mark.long), fixed_pump, motor]
+)
 def test_radau_gives_the_same(case):
     """The second integrator, at its own tolerances, agrees as well."""
     found, _ = case().compared(sharp=1.0, relative=None, method="radau")

@@ -127,6 +127,7 @@ def test_same_rows_same_bytes(tmp_path, monkeypatch):
     assert len({name.read_bytes() for name in names}) == 1
 
 
+@pytest.mark.long
 def test_memory_does_not_grow_with_the_rows(tmp_path):
     """Twice as many rows, 200 000 of them, take no more memory at their worst."""
     swept = ao.sweep(ao.read(KNEE, set=NEAR), WAYS, method="lhs", n=8)

@@ -172,7 +172,10 @@ DIAMETERS = {
 }
 
 
-@pytest.mark.parametrize(("quasi", "room"), [(False, 36.0), (True, 36.5), (False, 37.0)])
+@pytest.mark.parametrize(
+    ("quasi", "room"),
+    [(False, 36.0), (True, 36.5), pytest.param(False, 37.0, marks=pytest.mark.long)],
+)
 def test_yield_of_a_linear_margin(room, quasi):
     """Sum of two normals: mean 36 mm, deviation 0.5 mm, so the yield is Phi((room - 36)/0.5)."""
     actuator = ao.read(case.only(DIAMETERS), plugins=[sum_of_diameters(room)])
