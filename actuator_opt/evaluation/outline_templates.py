@@ -100,7 +100,7 @@ def shapes(
     hidden : names of parts that are not drawn
     """
     geometry = geometry_module.derive(subject.values(varied), subject.design)
-    dimensions = np.stack([np.broadcast_to(leaf, (count,)) for leaf in _leaves(geometry)])
+    dimensions = np.stack([np.broadcast_to(leaf, (count,)) for leaf in sizes_of(geometry)])
     parts = [_Parts(subject, geometry, dimensions[:, k], hidden) for k in range(count)]
     actual = [part.drawn() for part in parts]
     templates: list[Template] = []
@@ -132,10 +132,24 @@ def same_dimensions(
     dimensions = []
     for subject, varied in (first, second):
         geometry = geometry_module.derive(subject.values(varied), subject.design)
-        dimensions.append([np.broadcast_to(value, (count,)) for value in _leaves(geometry)])
+        dimensions.append([np.broadcast_to(value, (count,)) for value in sizes_of(geometry)])
     return len(dimensions[0]) == len(dimensions[1]) and bool(
         np.allclose(dimensions[0], dimensions[1], rtol=0.0, atol=SAME, equal_nan=True)
     )
+
+
+def template_of(subject: PreparedDesign, values: Mapping[str, float]) -> Template:
+    """Template of one design, with the derivatives by all its dimensions.
+
+    Parameters
+    ----------
+    subject : the design
+    values : changed numbers by PATH, SI
+    """
+    geometry = geometry_module.derive(subject.values(values), subject.design)
+    dimensions = np.array([float(np.squeeze(leaf)) for leaf in sizes_of(geometry)])
+    parts = _Parts(subject, geometry, dimensions, ())
+    return _template(parts, parts.drawn(), np.arange(len(dimensions)))
 
 
 @dataclass(frozen=True)
@@ -177,7 +191,7 @@ def _form(outlines: tuple[Outline, ...]) -> list[object]:
     return [(o.part, o.material, o.kind, [len(p) for p in o.polygons]) for o in outlines]
 
 
-def _leaves(geometry: Geometry) -> list[Array]:
+def sizes_of(geometry: Geometry) -> list[Array]:
     """All dimensions as a list of numbers, in a fixed order."""
     leaves: list[Array] = []
 

@@ -97,7 +97,7 @@ function paintButtons() {
   byId("pin").textContent = S.A ? "Unpin A" : "Pin A";
   byId("pin").setAttribute("aria-pressed", String(Boolean(S.A)));
   byId("swap").disabled = !S.A || !fits;
-  byId("save").disabled = byId("report").disabled = !fits;
+  FILES.enable(fits);
   document.body.classList.toggle("pinned", Boolean(S.A));
 }
 function announce() {
@@ -161,56 +161,11 @@ function swap() {
 const undo = () => { if (!byId("undo").disabled) { travel(S.past, S.future); paintButtons(); } };
 const redo = () => { if (!byId("redo").disabled) { travel(S.future, S.past); paintButtons(); } };
 
-// ---- files ----
-let REPLACING = { name: "", sha256: "" };
-function openSave() {
-  if (byId("save").disabled) return;
-  REPLACING = { name: "", sha256: "" };
-  byId("save-note").textContent = "";
-  byId("save-yes").textContent = "Save";
-  byId("file").value ||= S.design.suggested;
-  byId("save-dialog").showModal();
-  byId("file").select();
-}
-async function saveFile() {
-  let name = byId("file").value.trim();
-  if (!name.endsWith(".yaml")) name += ".yaml";
-  const replacing = REPLACING.name === name ? REPLACING.sha256 : "";
-  byId("save-yes").disabled = true;
-  try {
-    const saved = await ask("save", { changes: wishes(S.changes), name, replacing });
-    if (saved.written) {
-      byId("save-dialog").close();
-      note(`Saved ${saved.name} beside ${S.design.file}.`);
-      byId("live").textContent = `Saved ${saved.name}`;
-    } else {
-      REPLACING = saved;
-      byId("save-note").textContent = `Replace ${saved.name}? It exists${replacing ? ", and has changed just now" : ""}.`;
-      byId("save-yes").textContent = "Replace";
-    }
-  } catch (fault) {
-    byId("save-note").textContent = fault.message;
-  } finally {
-    byId("save-yes").disabled = false;
-  }
-}
-async function writeReport() {
-  byId("report").disabled = true;
-  note("The report is being written …");
-  try {
-    const { files } = await ask("report", { changes: wishes(S.changes) });
-    note(`Report: ${files.join(", ")}`);
-  } catch (fault) {
-    note(fault.message);
-  }
-  paintButtons();
-}
-
 // ---- keys ----
 addEventListener("keydown", (event) => {
   const typing = event.target.matches("input[type=text]");
   if (document.querySelector("dialog[open]")) {
-    if (event.key === "Enter" && event.target === byId("file")) { event.preventDefault(); saveFile(); }
+    FILES.typed(event);
     return;
   }
   const letter = event.key.toLowerCase();
@@ -218,13 +173,11 @@ addEventListener("keydown", (event) => {
     event.preventDefault();
     (letter === "y" || event.shiftKey ? redo : undo)();
   } else if (!event.ctrlKey && !event.metaKey && !event.altKey && !typing && !event.target.matches("select")) {
-    const act = { p: pin, x: swap, s: openSave, "?": () => byId("help-dialog").showModal() }[letter];
+    const act = { p: pin, x: swap, ...FILES.keys, "?": () => byId("help-dialog").showModal() }[letter];
     if (act) { event.preventDefault(); act(); }
   }
 });
-for (const [id, act] of Object.entries({ undo, redo, pin, swap, save: openSave, report: writeReport, "save-yes": saveFile })) byId(id).addEventListener("click", act);
-byId("file").addEventListener("input", () => { byId("save-yes").textContent = "Save"; byId("save-note").textContent = ""; REPLACING = { name: "", sha256: "" }; });
-byId("save-no").addEventListener("click", () => byId("save-dialog").close());
+for (const [id, act] of Object.entries({ undo, redo, pin, swap, ...FILES.acts })) byId(id).addEventListener("click", act);
 byId("help").addEventListener("click", () => byId("help-dialog").showModal());
 byId("help-close").addEventListener("click", () => byId("help-dialog").close());
 byId("across").addEventListener("change", () => { paintTrade(); settle(); });
@@ -256,7 +209,7 @@ async function start() {
   S.goal = S.design.goal;
   document.title = `${S.design.name}: studio`;
   byId("name").textContent = S.design.name;
-  byId("beside").textContent = S.design.file;
+  FILES.open(S.design);
   const limit = (row) => row.path.startsWith("requirements.");
   for (const row of S.design.numbers) if (row.asked && limit(row)) add("asked", row);
   for (const row of S.design.numbers) if (row.asked && !limit(row)) add("asked", row);

@@ -89,6 +89,11 @@ class Studio:
             return nearest
         return self._session.optimum
 
+    @property
+    def session(self) -> Session | None:
+        """The session at the optimum of the design as read; None if it has none."""
+        return self._session
+
     # ---- what the page shows ----
 
     def describe(self) -> dict[str, Any]:
@@ -109,7 +114,7 @@ class Studio:
             "numbers": [row for row in rows if row is not None],
             "dimensions": [
                 {"path": row.path, "label": words_of(row.path), "low": row.lower, "high": row.upper}
-                | _scale(quantity_of(row.path, design))
+                | scale_of(quantity_of(row.path, design))
                 for row in optimum.variables
             ],
         }
@@ -134,7 +139,7 @@ class Studio:
             "value": value,
             "lower": quantity.lower if math.isfinite(quantity.lower) else None,
             "upper": quantity.upper if math.isfinite(quantity.upper) else None,
-            **_scale(quantity),
+            **scale_of(quantity),
         }
 
     def solve(self, changes: Numbers, stop: Stop, *, explain: bool = False) -> dict[str, Any]:
@@ -290,8 +295,8 @@ class Studio:
                 "up": price.slope_up,
                 "low": price.holds[0],
                 "high": price.holds[1],
-                "below": _plain(price.changes[0]),
-                "above": _plain(price.changes[1]),
+                "below": plain_words(price.changes[0]),
+                "above": plain_words(price.changes[1]),
                 "movement": price.movement,
             }
             for price in found
@@ -374,6 +379,11 @@ class Studio:
         files = report(result, folder=self._out, actuator=actuator, command=self.command(changed))
         return [str(file.path) for file in files]
 
+    @property
+    def words(self) -> list[str]:
+        """Words of the command line that name the design, its changes and plugins."""
+        return [*self._words]
+
     def command(self, changed: Mapping[str, float] | None = None) -> str:
         """The command line that finds the same design; by default that shown last."""
         settings = self._settings(self.present if changed is None else changed)
@@ -398,7 +408,7 @@ def _options(name: str, values: Any) -> list[str]:
     return [word for value in values for word in (name, value)]
 
 
-def _scale(quantity: Quantity) -> dict[str, Any]:
+def scale_of(quantity: Quantity) -> dict[str, Any]:
     """Unit of a quantity: displayed value = offset + factor * SI value."""
     offset = quantity.to_display(0.0)
     return {
@@ -415,13 +425,13 @@ def _goal(optimum: Optimisation) -> dict[str, Any]:
     metric = optimum.best_evaluation.metrics.get(name)
     objective = optimum.design.objective
     plain = {"unit": "", "typed": "", "offset": 0.0, "factor": 1.0}
-    scale = plain if metric is None else _scale(metric.quantity)
+    scale = plain if metric is None else scale_of(metric.quantity)
     label = "objective" if metric is None else term_of(name)
     maximise = objective is not None and objective.aim == "max"
     return {"label": label, "mass": name == "mass", "maximise": maximise, **scale}
 
 
-def _plain(change: str | None) -> str | None:
+def plain_words(change: str | None) -> str | None:
     """Which limit becomes active or inactive, in words for a reader."""
     return None if change is None else text.pretty(change.replace("_", " "))
 

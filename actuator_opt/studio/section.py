@@ -16,7 +16,7 @@ from ..evaluation.result import Outline
 MM = 1000.0
 STEP = 1e-4
 """Relative change of a number for the difference quotient of the section."""
-_LENGTHS = {"bore": "bore ⌀", "rod": "rod ⌀", "closed_length": "closed length"}
+LENGTHS = {"bore": "bore ⌀", "rod": "rod ⌀", "closed_length": "closed length"}
 
 
 def _points(parts: Sequence[Outline]) -> Array:
@@ -25,21 +25,26 @@ def _points(parts: Sequence[Outline]) -> Array:
     return MM * np.concatenate(shapes)
 
 
+def parts(outlines: Sequence[Outline]) -> list[dict[str, Any]]:
+    """Name, kind, sides of the axis, and numbers of points of every part."""
+    return [
+        {
+            "part": outline.part.replace("_", " "),
+            "kind": outline.kind,
+            "sides": list(outline.sides),
+            "points": [len(polygon) for polygon in outline.polygons],
+        }
+        for outline in outlines
+    ]
+
+
 def drawing(evaluation: Evaluation) -> dict[str, Any]:
     """The section of an evaluated design: parts, numbers of points, coordinates [mm], lengths."""
     return {
-        "parts": [
-            {
-                "part": part.part.replace("_", " "),
-                "kind": part.kind,
-                "sides": list(part.sides),
-                "points": [len(polygon) for polygon in part.polygons],
-            }
-            for part in evaluation.outlines
-        ],
+        "parts": parts(evaluation.outlines),
         "numbers": np.round(_points(evaluation.outlines), 4).tolist(),
         "lengths": " · ".join(
-            f"{words} {MM * evaluation.lengths[name]:.4g}" for name, words in _LENGTHS.items()
+            f"{words} {MM * evaluation.lengths[name]:.4g}" for name, words in LENGTHS.items()
         )
         + " mm",
     }
