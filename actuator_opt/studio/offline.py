@@ -9,7 +9,6 @@ slider only if changing it in the program equals changing it in the file.
 from __future__ import annotations
 
 import hashlib
-import re
 import struct
 import zlib
 from base64 import b64encode
@@ -20,24 +19,24 @@ from typing import Any
 
 import numpy as np
 
-from ..api.sessions import Session
+from ..api import Actuator, Session, read
 from ..base import units
+from ..base.arguments import Change
 from ..base.dataclass import dataclass
 from ..base.errors import ActuatorError, Diagnostic, InputError, UsageError
 from ..base.files import write_text
 from ..base.numeric import Array, namespace
-from ..base.symbolic.program import OPERATIONS
+from ..base.symbolic.program import OPERATIONS, Program
 from ..base.symbolic.program_store import Recording
 from ..base.symbolic.recorded import RecordedFunction
 from ..base.tables import encoded
 from ..design import quantity_of
-from ..design.paths import words_of
 from ..evaluation import PreparedDesign, compute
-from ..evaluation.limits import ALL_CASES, LimitRow, MetricLimit
-from ..evaluation.outline_templates import Template, sizes_of, template_of
+from ..evaluation.limits import ALL_CASES, LimitRow
+from ..evaluation.outline_templates import sizes_of, template_of
 from ..evaluation.recorded_models import recorded_models
 from ..metrics import term_of
-from ..optimisation.actuator import ActuatorProblem, build, margins
+from ..optimisation.actuator import build, margins
 from ..optimisation.resolve.steps import Valley
 from ..optimisation.warm_start import AGREES
 from ..rendering import text
@@ -48,6 +47,8 @@ from .page import GENERATOR, offline_page
 
 LARGEST = 400_000
 """Largest offline page in bytes: a mail attachment that every mailbox takes (our choice)."""
+ABOUT = "drag a limit of this design, and the best design follows; works without network"
+"""What the page is, in words, for a report."""
 REACHES = (0.5, 0.25)
 """Shares of a number by which its slider may reach up and down; the first that the program covers
 is taken. A slider of the page spans a quarter; typing goes further."""
@@ -66,19 +67,30 @@ class OfflineFile:
         return {"path": str(self.path), "sha256": self.sha256, "bytes": self.size}
 
 
-def write_offline(studio: Studio, target: Path) -> OfflineFile:
-    """Write the offline page of a studio's design; an earlier offline page is replaced.
+def write_offline(
+    target: Path,
+    path: str,
+    *,
+    set: Sequence[Change] = (),
+    plugins: Sequence[Path] = (),
+    seed: int = 0,
+) -> OfflineFile:
+    """Write the offline page of a design; an earlier offline page is replaced.
+
+    Parameters
+    ----------
+    target : file of the page
+    path, set, plugins, seed : as for `Studio`
 
     Raises
     ------
     UsageError : the design cannot have an offline page
-    InputError : the file exists and is no offline page, or cannot be written
+    InputError : the file exists and is no offline page, or cannot be written; the design has faults
     """
     require_own(target)
-    content = page_of(studio)
-    path = write_text(target, content)
+    content = page_of(path, set=set, plugins=plugins, seed=seed)
     data = content.encode()
-    return OfflineFile(path, hashlib.sha256(data).hexdigest(), len(data))
+    return OfflineFile(write_text(target, content), hashlib.sha256(data).hexdigest(), len(data))
 
 
 def require_own(target: Path) -> None:
@@ -92,13 +104,22 @@ def require_own(target: Path) -> None:
         raise InputError(Diagnostic(message, "choose another name", str(target)))
 
 
-def page_of(studio: Studio) -> str:
-    """The offline page of a studio's design as HTML.
+def page_of(
+    path: str,
+    *,
+    set: Sequence[Change] = (),
+    plugins: Sequence[Path] = (),
+    seed: int = 0,
+) -> str:
+    """The offline page of a design as HTML; parameters as for `Studio`.
 
     Raises
     ------
     UsageError : the design cannot have an offline page
+    InputError : the design has faults
     """
+    _require_recordable(read(path, set=set, plugins=plugins))
+    studio = Studio(path, set=set, plugins=plugins, seed=seed)
     recorded = _RecordedDesign(studio, _session_of(studio))
     described = studio.describe()
     optimum = recorded.session.optimum
@@ -111,7 +132,7 @@ def page_of(studio: Studio) -> str:
     )
     if len(html.encode()) > LARGEST:
         size = f"{len(html.encode()) // 1000} kB, more than {LARGEST // 1000} kB"
-        raise _refused(f"its page would have {size}", "use the studio itself")
+        raise _refused(f"its page would have {size}", LIVE)
     return html
 
 
@@ -119,25 +140,32 @@ def _refused(reason: str, remedy: str) -> UsageError:
     return UsageError(Diagnostic(f"this design has no offline page: {reason}", remedy))
 
 
+LIVE = "use the studio itself, which runs all models"
+"""Remedy for a design without an offline page."""
+
+
+def _require_recordable(actuator: Actuator) -> None:
+    """Refuse a design with parts that no program of the page can contain."""
+    if actuator.design.duty is not None:
+        raise _refused("the models of its duty cycles are not recorded", LIVE)
+    if actuator.plugins:
+        names = ", ".join(plugin.name for plugin in actuator.plugins)
+        raise _refused(f"its custom metrics ({names}) are Python code", LIVE)
+    if actuator.subject().films:
+        raise _refused("its oil films are tables for the given numbers", LIVE)
+
+
 def _session_of(studio: Studio) -> Session:
     """The session of a design that can be offline."""
-    design, subject = studio.actuator.design, studio.actuator.subject()
-    live = "use the studio itself, which runs all models"
-    if studio.session is None:
+    session = studio.session
+    if session is None:
         raise _refused("no design meets its requirements", "run optimise, which says what to relax")
-    if design.duty is not None:
-        raise _refused("the models of its duty cycles are not recorded", live)
-    if subject.films:
-        raise _refused("its oil films are tables for the given numbers", live)
-    if subject.plugins:
-        names = ", ".join(plugin.name for plugin in subject.plugins)
-        raise _refused(f"custom metrics ({names}) are Python code", live)
-    if studio.session.problem.goal.single is None:
-        raise _refused("its objective is a weighted sum, whose weights depend on the design", live)
-    rough = studio.session.rough_gradients
-    if rough:
-        raise _refused(f"gradients of {', '.join(rough[:3])} need finite differences", live)
-    return studio.session
+    if session.problem.goal.single is None:
+        raise _refused("its objective is a weighted sum, whose weights depend on the design", LIVE)
+    if session.rough_gradients:
+        names = ", ".join(session.rough_gradients[:3])
+        raise _refused(f"gradients of {names} need finite differences", LIVE)
+    return session
 
 
 class _RecordedDesign:
@@ -165,7 +193,7 @@ class _RecordedDesign:
             limits=(*self.problem.rows, *self.problem.fixed), goals=["offline"],
         )  # fmt: skip
         if shown.names != self.names:
-            raise _refused("its recorded models read other numbers", "use the studio itself")
+            raise _refused("its recorded models read other numbers", LIVE)
         self.drawn = self._recorded(shown)
 
     def _recorded(self, function: RecordedFunction) -> Recording:
@@ -176,7 +204,7 @@ class _RecordedDesign:
         with np.errstate(all="ignore"):
             fresh(self.present[:, None])
         if fresh.recording is None:
-            raise _refused(fresh.reason, "use the studio itself, which runs all models")
+            raise _refused(fresh.reason, LIVE)
         return fresh.recording
 
     def _shown(
@@ -197,22 +225,21 @@ class _RecordedDesign:
 
     def data(self) -> dict[str, Any]:
         """Data of the page for its worker, without the description of the design."""
-        problem, count = self.problem, len(self.problem.paths)
-        paths = problem.paths
-        labels = [plain_words(f"{row.label}") for row in problem.rows]
-        labels += [plain_words(f"{path} {side}") for side in ("lower", "upper") for path in paths
-                   if problem.problem.upper[paths.index(path)] > problem.problem.lower[paths.index(path)]]
+        problem, box = self.problem, self.problem.problem
+        free = [name for k, name in enumerate(problem.paths) if box.upper[k] > box.lower[k]]
+        labels = [row.label for row in problem.rows]
+        labels += [f"{name} {side}" for side in ("lower", "upper") for name in free]
         return {
             "problem": {
-                "lower": problem.problem.lower.tolist(),
-                "upper": problem.problem.upper.tolist(),
+                "lower": box.lower.tolist(),
+                "upper": box.upper.tolist(),
                 "rows": self.rows.rows,
                 "answers": self.rows.answers.astype(int).tolist(),
             },
-            "present": self.present[count:].tolist(),
-            "paths": list(self.names[count:]),
+            "present": self.present[len(box.names) :].tolist(),
+            "paths": list(self.names[len(box.names) :]),
             "valleys": [_valley(valley) for valley in self.session.valleys],
-            "labels": labels,
+            "labels": [plain_words(label) for label in labels],
             "masses": [part.replace("_", " ") for part in self.masses],
             "limits": list(self._limits()),
             "fixed": [row.limit_of.origin != "check" for row in problem.fixed],
@@ -222,7 +249,7 @@ class _RecordedDesign:
 
     def _section(self) -> dict[str, Any]:
         template, used = self.template, self.used
-        slopes = template.slopes[: -4, used] * section.MM
+        slopes = template.slopes[:-4, used] * section.MM
         rows, places = np.nonzero(slopes)
         return {
             "parts": section.parts(template.outlines),
@@ -299,7 +326,7 @@ class _RecordedDesign:
             changed = build(self.studio.actuator.changed({path: value}).subject())
         except ActuatorError:
             return False
-        labels = [sorted(row.label for row in (*p.rows, *p.fixed)) for p in (problem, changed)]
+        labels = [{row.label for row in (*p.rows, *p.fixed)} for p in (problem, changed)]
         same_box = np.array_equal(problem.problem.lower, changed.problem.lower)
         same_box &= np.array_equal(problem.problem.upper, changed.problem.upper)
         if labels[0] != labels[1] or not same_box:
@@ -332,32 +359,57 @@ def _valley(valley: Valley) -> dict[str, Any]:
     }
 
 
-_ARRAYS = {"code": "<u2", "extra": "<i4", "outputs": "<i4", "frozen": "u1", "constants": "<f8"}
-"""Arrays of a program in their order, with the type of their elements."""
+_ARRAYS = {"extra": "<i4", "outputs": "<i4", "frozen": "u1", "constants": "<f8"}
+"""Arrays of a program after its code, in their order, with the type of their elements."""
+_PLANES = (2, 2, 3, 3, 3)
+"""Bytes of each number in the columns of the code: operation, result, three operands."""
 
 
 def _packed(data: Mapping[str, Any], recordings: Sequence[Recording]) -> str:
-    """Data and programs, compressed, as letters of base64.
-
-    The code is stored by columns, which compress to half the size of rows.
-    """
+    """Data and programs, compressed, as letters of base64; `opened` of the worker reads them."""
     programs = [recording.program for recording in recordings]
     heads = [
         {
             "operations": list(OPERATIONS),
             "slots": program.slots,
             "inputs": program.inputs,
+            "instructions": len(program.code),
             "sizes": {name: int(getattr(program, name).size) for name in _ARRAYS},
         }
         for program in programs
     ]
-    json = encoded(
-        {**data, "programs": heads}, ensure_ascii=False, separators=(",", ":")
-    ).encode()
-    arrays = [
-        np.ascontiguousarray(getattr(program, name).T, dtype=kind).tobytes()
-        for program in programs
-        for name, kind in _ARRAYS.items()
-    ]
-    whole = struct.pack("<I", len(json)) + json + b"".join(arrays)
-    return b64encode(zlib.compress(whole, 9)).decode("ascii")
+    whole = {**data, "programs": heads}
+    json = encoded(whole, ensure_ascii=False, separators=(",", ":")).encode()
+    arrays = [part for program in programs for part in _arrays(program)]
+    packed = zlib.compress(struct.pack("<I", len(json)) + json + b"".join(arrays), 9)
+    return b64encode(packed).decode("ascii")
+
+
+def _arrays(program: Program) -> Iterator[bytes]:
+    """The arrays of a program; the code as columns of bytes, which compress to a third."""
+    columns = [*program.code[:, :2].T, *_operands(program.code).T]
+    for column, count in zip(columns, _PLANES, strict=True):
+        for place in range(count):
+            yield (column >> 8 * place).astype("u1").tobytes()
+    for name, kind in _ARRAYS.items():
+        yield np.ascontiguousarray(getattr(program, name), dtype=kind).tobytes()
+
+
+def _operands(code: Array) -> Array:
+    """Operands (instructions, 3) as distances, in which equal formulas look equal.
+
+    Twice the number of instructions since the operand was computed; or twice its slot, plus 1, if
+    it is an input, a constant, a root, or the operand of a root.
+    """
+    roots, result = OPERATIONS.index("roots"), 2 * code[:, 2:].astype(np.int32) + 1
+    written: dict[int, int] = {}
+    for k, (operation, slot, *operands) in enumerate(code.tolist()):
+        if operation & 255 == roots:
+            for root in range(slot, slot + 2 * operands[1]):
+                written.pop(root, None)
+            continue
+        for j, operand in enumerate(operands):
+            if operand in written:
+                result[k, j] = 2 * (k - written[operand])
+        written[slot] = k
+    return result

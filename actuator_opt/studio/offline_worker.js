@@ -1,6 +1,6 @@
 // Answers of the page without a server: optima, prices and curves, as `model.py` gives them.
-const ORDER = ["code", "extra", "outputs", "frozen", "constants"];
-const KINDS = { code: Uint16Array, extra: Int32Array, outputs: Int32Array, frozen: Uint8Array, constants: Float64Array };
+const KINDS = { extra: Int32Array, outputs: Int32Array, frozen: Uint8Array, constants: Float64Array };
+const PLANES = [2, 2, 3, 3, 3];
 const QUEUE = [];
 let DATA = null, PROBLEM = null, DRAWN = null, VALLEYS = [], LAST = { key: "", best: null }, BUSY = false;
 
@@ -25,8 +25,17 @@ async function opened(text) {
     return part;
   };
   data.programs = data.programs.map((head) => {
-    const arrays = Object.fromEntries(ORDER.map((name) => [name, taken(head.sizes[name], KINDS[name])])), count = arrays.code.length / 5;
-    return Machine.program({ ...head, ...arrays, code: arrays.code.map((_, k) => arrays.code[(k % 5) * count + Math.floor(k / 5)]) });
+    const columns = PLANES.map((count) => {
+      const column = new Uint32Array(head.instructions);
+      for (let place = 0; place < count; place++) taken(head.instructions, Uint8Array).forEach((byte, k) => { column[k] += byte * 256 ** place; });
+      return column;
+    });
+    const [operations, results] = columns, code = new Uint16Array(5 * head.instructions);
+    operations.forEach((operation, k) => {
+      code.set([operation, results[k]], 5 * k);
+      for (let j = 2; j < 5; j++) code[5 * k + j] = columns[j][k] % 2 ? columns[j][k] >> 1 : results[k - (columns[j][k] >> 1)];
+    });
+    return Machine.program({ ...head, code, ...Object.fromEntries(Object.keys(KINDS).map((name) => [name, taken(head.sizes[name], KINDS[name])])) });
   });
   return data;
 }
