@@ -11,9 +11,9 @@ function paint() {
   document.body.classList.toggle("stale", !truthNow.feasible && current);
   document.body.classList.toggle("about", !current && !(forecast && forecast.section));
   const objective = forecast ? forecast.objective : design.objective;
-  const nothing = current && !truthNow.feasible;
-  byId("objective").textContent = nothing ? "nothing fits" : objective === null ? "no objective" : `${objectiveText(objective, forecast)}${current || forecast ? "" : " …"}`;
-  byId("objective").className = current ? "" : "about";
+  const nothing = current && !truthNow.feasible, near = current && typeof design.within === "number";
+  byId("objective").textContent = nothing ? "nothing fits" : objective === null ? "no objective" : `${objectiveText(objective, forecast || near)}${near ? `, within ${withUnit(trimmed(design.within * S.goal.factor, 2), S.goal.unit)}` : ""}${current || forecast ? "" : " …"}`;
+  byId("objective").className = current && !near ? "" : "about";
   const pinned = S.A && S.A.shown;
   byId("against").textContent = pinned && !nothing && objective !== null && (current || forecast) ? `A ${objectiveText(pinned.objective)}, ${signed((objective - pinned.objective) * S.goal.factor, 3)}` : "";
   drawSection(forecast && forecast.section ? forecast.section : design.section, pinned && pinned.section);

@@ -31,12 +31,12 @@ from ..base.symbolic.program_store import Recording
 from ..base.symbolic.recorded import RecordedFunction
 from ..base.tables import encoded
 from ..design import quantity_of
-from ..evaluation import PreparedDesign, compute
-from ..evaluation.limits import ALL_CASES, LimitRow
+from ..evaluation import PreparedDesign, compute, prepare
+from ..evaluation.limits import ALL_CASES, LimitRow, all_limits, rows_of
 from ..evaluation.outline_templates import sizes_of, template_of
 from ..evaluation.recorded_models import recorded_models
 from ..metrics import term_of
-from ..optimisation.actuator import build, margins
+from ..optimisation.actuator import bounded_margin, margins
 from ..optimisation.resolve.steps import Valley
 from ..optimisation.warm_start import AGREES
 from ..rendering import text
@@ -185,8 +185,10 @@ class _RecordedDesign:
         self.limits = tuple(
             dict.fromkeys(row.limit_of for row in (*self.problem.rows, *self.problem.fixed))
         )
-        template = template_of(subject, dict(zip(paths, map(float, x), strict=True)))
-        self.template, self.used = template, np.flatnonzero(template.slopes.any(axis=0))
+        self.labels = {row.label for row in (*self.problem.rows, *self.problem.fixed)}
+        self.asked = [x for x in all_limits(subject.design) if x.origin != "advice"]
+        self.template = template_of(prepare(session.optimum.design), {})
+        self.used = np.flatnonzero(self.template.slopes.any(axis=0))
         self.rows = self._recorded(known)
         shown = recorded_models(
             self._shown, subject=subject, paths=paths, read=numbers.read.union(self.names),
@@ -323,20 +325,24 @@ class _RecordedDesign:
         """Whether the program with a changed number equals the problem built with it."""
         problem, x = self.problem, self.session.valleys[0].point.x[:, None]
         try:
-            changed = build(self.studio.actuator.changed({path: value}).subject())
+            changed = self.studio.actuator.changed({path: value}).subject()
         except ActuatorError:
             return False
-        labels = [{row.label for row in (*p.rows, *p.fixed)} for p in (problem, changed)]
-        same_box = np.array_equal(problem.problem.lower, changed.problem.lower)
-        same_box &= np.array_equal(problem.problem.upper, changed.problem.upper)
-        if labels[0] != labels[1] or not same_box:
+        subject = replace(changed, windows=True, lenient=True)
+        numbers = subject.values(dict(zip(problem.paths, x, strict=True)))
+        run = compute(subject, numbers)
+        found = [row for limit in self.asked for row in rows_of(limit, run.computed, numbers)]
+        rows = {row.label: row for row in found}
+        if rows.keys() != self.labels:
             return False
-        rebuilt = replace(changed, rows=problem.rows, scales=problem.scales)
         inputs = np.concatenate([x[:, 0], self.present[len(x) :]])
         inputs[self.names.index(path)] = value
         ours = self.rows.program.values(inputs[None])
-        theirs = rebuilt.by_models(x, {})
-        expected = np.concatenate([np.atleast_1d(theirs.objective), theirs.constraints[:, 0]])
+        sizes = problem.scales or (1.0,) * len(problem.rows)
+        sized = zip((rows[row.label] for row in problem.rows), sizes, strict=True)
+        margin = [np.squeeze(row.margin) / (1.0 if row.limit else size) for row, size in sized]
+        objective = np.squeeze(problem.goal.value(run.computed, subject.cases))
+        expected = np.append(objective, bounded_margin(np.array(margin, dtype=float)))
         same = np.allclose(
             ours[0, : self.rows.rows], expected, rtol=AGREES, atol=AGREES, equal_nan=True
         )

@@ -135,8 +135,7 @@ const ROUTES = {
     const best = await bestOf(changes);
     if (!best.optimum) return best.point ? { prices: [] } : { infeasible: true };
     const prices = new Prices(PROBLEM, best.point, best.numbers, DATA.labels), places = paths.map((path) => DATA.place.get(path));
-    await breathe();
-    prices.prepare();
+    await prices.prepare(breathe);
     const direct = prices.direct(places), rows = [];
     for (const [k, path] of paths.entries()) {
       await breathe();

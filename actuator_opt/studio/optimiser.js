@@ -230,18 +230,18 @@ async function solved(problem, valleys, numbers, breathe) {
     }
   }
   if (!best.optimum) {
-    const found = await followed(problem, first, numbers, breathe, noted);
+    const found = await followed(problem, first, numbers, breathe);
     if (found) take(found.point, true, found);
   }
   return best;
 }
 // The optimum along a straight way from the numbers of a valley to other numbers, in steps; null where the way ends.
-async function followed(problem, valley, numbers, breathe, noted) {
+async function followed(problem, valley, numbers, breathe) {
   let [share] = SHARES, at = 0, here = valley, descent = null;
   while (at < 1) {
     await breathe();
     const next = Math.min(1, at + share), between = valley.numbers.map((x, k) => x + next * (numbers[k] - x));
-    const start = noted(problem.at(here.z, between));
+    const start = problem.at(here.z, between);
     descent = new Descent(problem, here, false);
     let end = fullSteps(problem, descent, start, between);
     if (!end) {

@@ -17,12 +17,14 @@ class Prices {
     const point = this.problem.at(z, numbers, false);
     return combined(point.jacobian, this.weights, this.problem.size).map((x) => (Number.isFinite(x) ? x : 0));
   }
-  prepare() {
-    const { problem, point, scale, binding, lengths, gradients } = this, n = problem.size;
-    const columns = problem.units.map((move) => {
+  // Second derivatives, which all prices share; `breathe` is awaited between evaluations.
+  async prepare(breathe) {
+    const { problem, point, scale, binding, lengths, gradients } = this, n = problem.size, columns = [];
+    for (const move of problem.units) {
+      await breathe();
       const [above, below] = [1, -1].map((sign) => this.lagrangian(added(point.z, sign * HESSIAN_STEP, move), this.numbers));
-      return above.map((x, j) => (x - below[j]) / (2 * HESSIAN_STEP * scale));
-    });
+      columns.push(above.map((x, j) => (x - below[j]) / (2 * HESSIAN_STEP * scale)));
+    }
     const system = Array.from({ length: n + binding.length }, () => new Float64Array(n + binding.length));
     for (let i = 0; i < n; i++) for (let j = 0; j < n; j++) system[i][j] = (columns[i][j] + columns[j][i]) / 2;
     binding.forEach((k, row) => gradients[k].forEach((x, j) => { system[n + row][j] = system[j][n + row] = x / lengths[row]; }));
