@@ -1,7 +1,7 @@
 // Re-solve the optimum of a recorded design: the steps of optimisation/resolve, with the same limits.
 const ACTIVE = 1e-6, MET = 1e-6, FEASIBLE = 1e-11, RESIDUAL = 1e-6, SETTLED = 1e-6;
 const ITERATIONS = 10, LONGEST = 60, RESTORATIONS = 24, PATIENT = 4, MEMORY = 3;
-const LONGEST_STEP = 0.5, FIRST_RADIUS = 0.1, LEAST_RADIUS = 1e-4, LEAST_CURVATURE = 1e-10;
+const LONGEST_STEP = 0.5, FIRST_RADIUS = 0.1, LEAST_RADIUS = 1e-4, LEAST_CURVATURE = 1e-10, NEAR = 10 * LEAST_RADIUS;
 const ON_BOUND = 1e-12, HESSIAN_STEP = 1e-5, BETTER = 1e-8, BEYOND = 1;
 const SHARES = [1 / 4, 1 / 32];  // first and least step towards the changed numbers, as a share of the change
 const clipped = (z, low, high) => z.map((x, k) => Math.min(Math.max(x, low[k]), high[k]));
@@ -258,12 +258,14 @@ async function followed(problem, valley, numbers, breathe) {
   }
   return descent;
 }
-// By how much the objective might still fall, to first and second order: what the next quadratic step promises.
+// By how much the objective may still fall at a point whose conditions are not met: what the next quadratic step
+// promises, and, for a kink that stops all steps, what the gradient promises within NEAR of every coordinate.
 function promised(problem, descent) {
-  const { point, hessian, scale } = descent, trial = new Descent(problem, descent.valley(), true);
-  trial.hessian = hessian;
-  trial.point = point;
-  trial.chooseStep();
-  const { step } = trial;
-  return scale * Math.max(0, -dot(point.jacobian[0], step) / scale - 0.5 * dot(step, times(hessian, step)));
+  const { point, hessian, scale } = descent, slope = point.jacobian[0].map((x) => x / scale), gains = [0];
+  for (const [matrix, radius] of [[hessian, LONGEST_STEP], [problem.units.map((row) => row.map((x) => NEAR * x)), NEAR]]) {
+    const { margins, gradients } = problem.limits(point), bounds = problem.rows - 1;
+    const { step, fits } = quadratic(matrix, slope, gradients, margins.map((x, k) => (k < bounds ? Math.max(x, 0) : Math.min(x, radius))));
+    if (fits) gains.push(-dot(slope, step) - 0.5 * dot(step, times(matrix, step)));
+  }
+  return scale * Math.max(...gains);
 }

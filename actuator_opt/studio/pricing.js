@@ -1,6 +1,6 @@
 // Prices of an optimum: the derivative of its objective by a number, how the dimensions move, and how far both hold
 // [Fiacco1983], as in optimisation/prices.py.
-const NUMBER_STEP = 1e-5, INSTANT = 1e-7, SINGULAR = 1e-11, RANK = 1e-8, FLAT = 1e-7;
+const NUMBER_STEP = 1e-5, INSTANT = 1e-7, SINGULAR = 1e-11, PIVOT = 1e-9, MOST_PIVOTS = 200;
 
 class Prices {
   // labels: of all margins, lower and upper bounds
@@ -19,7 +19,7 @@ class Prices {
   }
   // Second derivatives, which all prices share; `breathe` is awaited between evaluations.
   async prepare(breathe) {
-    const { problem, point, scale, binding, lengths, gradients } = this, n = problem.size, columns = [];
+    const { problem, point, scale, binding, lengths, gradients, multipliers } = this, n = problem.size, columns = [];
     for (const move of problem.units) {
       await breathe();
       const [above, below] = [1, -1].map((sign) => this.lagrangian(added(point.z, sign * HESSIAN_STEP, move), this.numbers));
@@ -29,7 +29,9 @@ class Prices {
     for (let i = 0; i < n; i++) for (let j = 0; j < n; j++) system[i][j] = (columns[i][j] + columns[j][i]) / 2;
     binding.forEach((k, row) => gradients[k].forEach((x, j) => { system[n + row][j] = system[j][n + row] = x / lengths[row]; }));
     this.system = eigen(system);
-    this.several = this.active.length > rankOf(this.active.map((k) => gradients[k]));
+    const active = this.active.filter((k) => norm(gradients[k]) > 0), lengthOf = (k) => norm(gradients[k]);
+    this.polytope = new Polytope(active.map((k) => gradients[k].map((x) => x / lengthOf(k))), active.map((k) => multipliers[k] * lengthOf(k)));
+    this.shares = active.map((k) => [k, lengthOf(k)]);
   }
   // Derivatives of all rows by the numbers at some places, at fixed dimensions.
   direct(places) {
@@ -47,18 +49,16 @@ class Prices {
     const solution = shortest(this.system, right, SINGULAR), moves = solution.slice(0, n), shifts = new Float64Array(this.margins.length);
     binding.forEach((k, row) => { shifts[k] = -solution[n + row] * scale / lengths[row]; });
     const rates = gradients.map((row, k) => (k < problem.rows - 1 ? direct[k + 1] : 0) + dot(row, moves));
-    const single = dot(this.weights, direct), sides = this.several ? this.sides(direct) : [single, single];
+    const single = dot(this.weights, direct), sides = this.polytope.unique ? [single, single] : this.sides(direct);
     const [low, high] = this.ends(value, rates, shifts, multipliers);
     return { value, down: sides[0], up: sides[1], low, high, moves: Float64Array.from(moves, (x, j) => x * problem.slope(point.x, j)) };
   }
-  // Prices of a decrease and an increase where the multipliers are not unique [Gauvin1982]: the best first-order step each.
+  // Prices of a decrease and an increase where the multipliers are not unique: the least and the largest [Gauvin1982].
   sides(direct) {
-    const { problem, point, active, gradients, scale } = this, slope = point.jacobian[0].map((x) => x / scale);
-    const flat = problem.units.map((row) => row.map((x) => FLAT * x));
+    const costs = this.shares.map(([k, length]) => (k < this.problem.rows - 1 ? -direct[k + 1] / length : 0));
     return [-1, 1].map((sign) => {
-      const margins = Float64Array.from(active, (k) => (k < problem.rows - 1 ? sign * direct[k + 1] : 0)), size = largest(margins) || 1;
-      const { step, fits } = quadratic(flat, slope, active.map((k) => gradients[k]), margins.map((x) => x / size));
-      return fits ? direct[0] + sign * scale * size * dot(slope, step) : null;
+      const most = this.polytope.highest(costs.map((x) => sign * x));
+      return most === null ? null : direct[0] + sign * most;
     });
   }
   // The nearest changes of the active limits below and above a value: [value, text], or null up to a change of 100 %.
@@ -73,16 +73,36 @@ class Prices {
     return nearest.map((end) => (end && Math.abs(end[0]) <= reference ? [value + end[0], end[1]] : null));
   }
 }
-function rankOf(rows) {
-  const basis = [];
-  for (const row of rows) {
-    const length = norm(row) || 1, rest = row.map((x) => x / length);
-    for (let pass = 0; pass < 2; pass++) for (const one of basis) {
-      const share = dot(one, rest);
-      for (let k = 0; k < rest.length; k++) rest[k] -= share * one[k];
-    }
-    const left = norm(rest);
-    if (left > RANK) basis.push(rest.map((x) => x / left));
+// All m >= 0 whose combination of columns, each of length 1, is the same as that of `start`.
+class Polytope {
+  constructor(columns, start) {
+    this.columns = columns;
+    this.target = combined(columns, start, columns.length ? columns[0].length : 0);
+    this.basis = [];
+    const order = columns.map((_, k) => k).sort((a, b) => (start[b] > 0) - (start[a] > 0));
+    for (const k of order) if (leastSquares([...this.basis, k].map((j) => columns[j]), this.target)) this.basis.push(k);
+    this.unique = this.basis.length === columns.length;
   }
-  return basis.length;
+  // The largest cost by the simplex method with the rule of Bland, which ends; null if it is unbounded.
+  highest(costs) {
+    const { columns, target } = this, basis = [...this.basis], size = largest(costs) || 1;
+    for (let pivots = 0; ; pivots++) {
+      const own = basis.map((k) => columns[k]), at = leastSquares(own, target);
+      let entering = -1, direction = null;
+      for (let k = 0; k < columns.length && entering < 0; k++) {
+        if (basis.includes(k)) continue;
+        direction = leastSquares(own, columns[k]);
+        if (costs[k] - basis.reduce((sum, j, place) => sum + costs[j] * direction[place], 0) > PIVOT * size) entering = k;
+      }
+      if (entering < 0 || pivots === MOST_PIVOTS) return basis.reduce((sum, j, place) => sum + costs[j] * Math.max(at[place], 0), 0);
+      let leaving = -1, least = Infinity;
+      basis.forEach((k, place) => {
+        if (direction[place] <= PIVOT) return;
+        const ratio = Math.max(at[place], 0) / direction[place];
+        if (ratio < least - PIVOT || (ratio <= least + PIVOT && k < basis[leaving])) { least = Math.min(least, ratio); leaving = place; }
+      });
+      if (leaving < 0) return null;
+      basis[leaving] = entering;
+    }
+  }
 }
