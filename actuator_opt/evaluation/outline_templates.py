@@ -138,18 +138,36 @@ def same_dimensions(
     )
 
 
-def template_of(subject: PreparedDesign, values: Mapping[str, float]) -> Template:
+def template_of(subject: PreparedDesign) -> Template:
     """Template of one design, with the derivatives by all its dimensions.
 
-    Parameters
-    ----------
-    subject : the design
-    values : changed numbers by PATH, SI
+    Dimensions that are equal by construction, such as a shoulder and the ring on it, differ as soon
+    as only one is changed. A point that then appears between two others is left out.
     """
-    geometry = geometry_module.derive(subject.values(values), subject.design)
-    dimensions = np.array([float(np.squeeze(leaf)) for leaf in sizes_of(geometry)])
+    geometry = geometry_module.derive(subject.values({}), subject.design)
+    dimensions = np.array([float(np.squeeze(size)) for size in sizes_of(geometry)])
     parts = _Parts(subject, geometry, dimensions, ())
-    return _template(parts, parts.drawn(), np.arange(len(dimensions)))
+    outlines, numbers = parts.drawn()
+    slopes = np.zeros((len(numbers), len(dimensions)))
+    for k in range(len(dimensions)):
+        moved = _like(outlines, *parts.drawn(k))
+        if len(moved) == len(numbers):
+            slopes[:, k] = np.round((moved - numbers) / STEP, 9)
+    return Template(outlines, numbers, slopes, dimensions)
+
+
+def _like(outlines: tuple[Outline, ...], moved: tuple[Outline, ...], numbers: Array) -> Array:
+    """The coordinates of moved outlines, without points that the outlines do not have."""
+    points, at = [], 0
+    known, present = ([p for o in parts for p in o.polygons] for parts in (outlines, moved))
+    for before, after in zip(known, present, strict=False):  # else no derivative
+        shape = numbers[at : at + 2 * len(after)].reshape(-1, 2)
+        at += 2 * len(after)
+        while len(shape) > len(before):
+            gaps = np.abs(shape - np.roll(shape, 1, axis=0)).sum(axis=1)
+            shape = np.delete(shape, np.argmin(gaps), axis=0)
+        points.append(shape.ravel())
+    return np.concatenate([*points, numbers[at:]])
 
 
 @dataclass(frozen=True)

@@ -187,7 +187,7 @@ class _RecordedDesign:
         )
         self.labels = {row.label for row in (*self.problem.rows, *self.problem.fixed)}
         self.asked = [x for x in all_limits(subject.design) if x.origin != "advice"]
-        self.template = template_of(prepare(session.optimum.design), {})
+        self.template = template_of(prepare(session.optimum.design))
         self.used = np.flatnonzero(self.template.slopes.any(axis=0))
         self.rows = self._recorded(known)
         shown = recorded_models(
@@ -266,6 +266,7 @@ class _RecordedDesign:
     def _limits(self) -> Iterator[dict[str, Any]]:
         """Every limit with its rows, as the list of what holds the design shows it."""
         evaluation, problem = self.session.optimum.evaluation, self.problem
+        listed: set[tuple[str | None, str | None]]
         listed = {(row.metric, row.sense) for row in evaluation.requirements}
         listed |= {(row.metric, row.sense) for row in evaluation.checks if not row.advice}
         sizes = problem.scales or (1.0,) * len(problem.rows)

@@ -32,6 +32,19 @@ PLUGIN = """from actuator_opt import metric
 @metric("own_mass", dimension="mass")
 def own_mass(view): return view.metric("mass")
 """
+SOLVE = """async ([jobs, number]) => {
+  const ends = [];
+  for (const [data, start] of jobs) {
+    const box = { lower: [0.1, 0.1], upper: [4, 4], rows: 2, answers: [] };
+    const problem = new Problem(Machine.program(data), box);
+    const valley = { z: Float64Array.from(start, Math.log), hessian: problem.units, scale: 1,
+      price: 3, prices: new Float64Array(5), numbers: [1] };
+    const { point, optimum, descent } = await solved(problem, [valley], [number], () => null);
+    const within = optimum ? 0 : promised(problem, descent);
+    ends.push([optimum, ...point.x, point.objective, within]);
+  }
+  return ends;
+}"""
 SAME = 1e-8
 """Relative difference of masses that counts as the same optimum."""
 
@@ -102,7 +115,7 @@ def test_the_file_is_small_and_loads_nothing(page_file):
     assert len(text.encode()) <= offline.LARGEST == 400_000
     policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
     assert policy.startswith("default-src 'none'; ")
-    assert "connect-src" not in policy and "unsafe" not in policy
+    assert not re.search("connect-src|unsafe", policy)
     own = {"style": re.findall(r"<style>(.*?)</style>", text, re.S)}
     own["script"] = re.findall(r"<script>(.*?)</script>", text, re.S)
     for kind, found in own.items():
@@ -111,8 +124,9 @@ def test_the_file_is_small_and_loads_nothing(page_file):
         assert f"{kind}-src 'sha256-{digest}'" in policy
     assert set(re.findall(r"https?://[\w./-]*", text)) == {"http://www.w3.org/2000/svg"}
     assert not re.findall(r"(?:src|href)=(?!\"data:,\")", text.replace("-src", ""))
-    assert text.count("knee </") == 0 and html.escape(NAME) in text  # only in the title
-    assert 'id="save"' not in text and 'id="report"' not in text  # they need a server
+    assert "knee </" not in text
+    assert html.escape(NAME) in text  # in the title
+    assert not re.search('id="(save|report)"', text)  # they need a server
 
 
 def test_what_cannot_be_offline_is_refused_by_name(tmp_path):
@@ -127,11 +141,14 @@ def test_what_cannot_be_offline_is_refused_by_name(tmp_path):
         ([KNEE, "--port", "8000"], "--port"),
     ):
         done = run("studio", *words, "--offline", out)
-        assert done.code == 2 and reason in done.err and done.err.count("\n") <= 2
+        assert done.code == 2
+        assert reason in done.err
+        assert done.err.count("\n") <= 2
     assert run("studio", KNEE, "--offline", tmp_path / "page.txt").code == 2
     out.write_text("<!DOCTYPE html>mine", "utf-8")
     done = run("studio", KNEE, "--offline", out)
-    assert done.code == 3 and "is no offline page" in done.err
+    assert done.code == 3
+    assert "is no offline page" in done.err
     assert out.read_text("utf-8") == "<!DOCTYPE html>mine"
     assert run("studio", KNEE, "--offline", tmp_path / "none" / "page.html").code == 3
 
@@ -140,7 +157,9 @@ def test_weighted_goals_and_impossible_requirements_are_refused(tmp_path):
     """Designs whose optimum a page cannot follow, or that have none."""
     tree = yaml.safe_load((DESIGNS / "steel_baseline.yaml").read_text("utf-8"))
     weighted = tree | {"objective": {"minimise": {"mass": 1, "closed_length": 1}}}
-    impossible = tree | {"requirements": tree["requirements"] | {"stiffness_min": {"min": "9000 kN/mm"}}}
+    impossible = tree | {
+        "requirements": tree["requirements"] | {"stiffness_min": {"min": "9000 kN/mm"}}
+    }
     for changed, reason in ((weighted, "weighted sum"), (impossible, "no design meets")):
         file = tmp_path / "steel.yaml"
         file.write_text(yaml.safe_dump(changed, sort_keys=False), "utf-8")
@@ -157,7 +176,7 @@ def test_optima_prices_and_drawing_equal_those_of_the_studio(page):
     assert found["section"]["parts"] == expected["section"]["parts"]
     assert found["section"]["lengths"] == expected["section"]["lengths"]
     drawn = [np.array(one["section"]["numbers"]) for one in (found, expected)]
-    assert np.abs(drawn[0] - drawn[1]).max() < 0.25  # mm; a cap's plug is not linear
+    assert np.abs(drawn[0] - drawn[1]).max() < 0.05  # mm; the edge of a plug is not linear
     assert [x["part"] for x in found["masses"]] == [x["part"] for x in expected["masses"]]
     for mine, theirs in zip(found["masses"], expected["masses"], strict=True):
         assert mine["mass"] == pytest.approx(theirs["mass"], rel=1e-8)
@@ -171,9 +190,10 @@ def test_optima_prices_and_drawing_equal_those_of_the_studio(page):
     assert mine.keys() == theirs.keys()
     for path, price in mine.items():
         size, other = expected["objective"] / price["value"], theirs[path]
-        for key, room in (("down", 1e-5 * size), ("up", 1e-5 * size), ("low", None), ("high", None)):
-            close = pytest.approx(other[key], rel=1e-4, abs=abs(room or 1e-6 * price["value"]))
-            assert price[key] is None if other[key] is None else price[key] == close, (path, key)
+        for key in ("down", "up", "low", "high"):
+            room = 1e-5 * abs(size if key in ("down", "up") else price["value"])
+            same = price[key] is other[key] or abs(price[key] - other[key]) <= room
+            assert same, (path, key, price[key], other[key])
         assert (price["below"], price["above"]) == (other["below"], other["above"])
     stiffness = [np.array(x["requirements.stiffness_min.min"]["section"]) for x in (mine, theirs)]
     assert np.abs(stiffness[0] - stiffness[1]).max() < 0.02 * np.abs(stiffness[1]).max()
@@ -236,7 +256,7 @@ def test_the_optimiser_on_problems_with_known_optima(visit, tmp_path):
     def kink(x):  # |x - number| + y²: the optimum is a kink
         return np.stack([abs(x[0] - x[2]) + (x[1] - 0.5) ** 2, x[0] + 10.0])
 
-    numbers, jobs = 1.3, []
+    number, jobs = 1.3, []
     for function, start in ((circle, [0.5, 0.5]), (kink, [1.0, 0.5])):
         recorded = RecordedFunction(function, ["x", "y", "number"], np.array([*start, 1.0]))
         recorded(recorded.present[:, None])
@@ -247,23 +267,14 @@ def test_the_optimiser_on_problems_with_known_optima(visit, tmp_path):
     )
     file = tmp_path / "run.html"
     file.write_text(f'<meta charset="utf-8"><script>{script}</script>', "utf-8")
-    found = visit(file).evaluate(
-        """async ([jobs, number]) => { const ends = [];
-        for (const [data, start] of jobs) {
-          const problem = new Problem(Machine.program(data), { lower: [0.1, 0.1], upper: [4, 4], rows: 2, answers: [] });
-          const valley = { z: Float64Array.from(start, Math.log), hessian: [[1, 0], [0, 1]].map((row) => Float64Array.from(row)),
-            scale: 1, price: 3, prices: new Float64Array(5), numbers: [1] };
-          const { point, optimum, descent } = await solved(problem, [valley], [number], async () => {});
-          ends.push([optimum, ...point.x, point.objective, optimum ? 0 : promised(problem, descent)]);
-        }
-        return ends; }""",
-        [jobs, numbers],
-    )  # fmt: skip
+    found = visit(file).evaluate(SOLVE, [jobs, number])
     optimum, x, y, objective, _ = found[0]
-    assert optimum and (x, y) == pytest.approx((numbers / 2, numbers / 2), rel=1e-6)
-    assert objective == pytest.approx(numbers**2 / 2, rel=1e-10)
+    assert optimum
+    assert (x, y) == pytest.approx((number / 2, number / 2), rel=1e-6)
+    assert objective == pytest.approx(number**2 / 2, rel=1e-10)
     optimum, x, y, objective, within = found[1]
-    assert not optimum and objective - within <= 1e-9 <= objective <= 0.05
+    assert not optimum
+    assert objective - within <= 0 < objective < 0.05
 
 
 def test_files_are_attached_to_a_report(tmp_path):
@@ -292,8 +303,9 @@ def test_attach_studio(tmp_path):
     (page,) = PdfReader(tmp_path / "steel_baseline.pdf").attachments["steel_baseline_studio.html"]
     assert page.decode() == offline.page_of(str(steel))
     done = run("rerun", tmp_path / "steel_baseline.pdf", "--json")
-    assert done.code == 0 and done.json["rerun"]["repeats"]
+    assert done.code == 0
+    assert done.json["rerun"]["repeats"]
     walking = DESIGNS / "knee_walking.yaml"
     done = run("report", walking, "--attach-studio", "--out", tmp_path, "--quiet")
-    assert "--attach-studio: not attached: " in done.err and "duty cycles" in done.err
+    assert re.search("--attach-studio: not attached: .*duty cycles", done.err)
     assert "knee_walking_studio.html" not in PdfReader(tmp_path / "knee_walking.pdf").attachments
