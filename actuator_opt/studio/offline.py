@@ -48,7 +48,7 @@ from .page import GENERATOR, offline_page
 LARGEST = 400_000
 """Largest offline page in bytes: a mail attachment that every mailbox takes (our choice)."""
 ABOUT = "drag a limit of this design, and the best design follows; works without network"
-"""What the page is, in words, for a report."""
+"""Use of the page, in words for a report."""
 REACHES = (0.5, 0.25)
 """Shares of a number by which its slider may reach up and down; the first that the program covers
 is taken. A slider of the page spans a quarter; typing goes further."""
@@ -212,7 +212,7 @@ class _RecordedDesign:
     def _shown(
         self, subject: PreparedDesign, points: Array, varied: Mapping[str, Array]
     ) -> tuple[tuple[()], Array]:
-        """What the page shows: masses, sizes of the drawing, limits, fixed margins, lengths."""
+        """Numbers shown: masses, sizes of the drawing, limits, fixed margins, lengths."""
         count = points.shape[1]
         numbers = subject.values(dict(varied) | dict(zip(self.problem.paths, points, strict=True)))
         run = compute(subject, numbers)

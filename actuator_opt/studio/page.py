@@ -23,7 +23,7 @@ OFFLINE = {"link": "offline_link", "files": "offline_files"}
 WORKER = ("words", "algebra", "optimiser", "pricing", "offline_worker")
 """Parts of the offline page's worker, after the machine that runs programs."""
 GENERATOR = '<meta name="generator" content="actuator-opt studio">'
-"""Marks the offline pages, so that a new one may replace an old one."""
+"""Marks the offline pages, so that a later page may replace an earlier page."""
 
 
 def _text(name: str) -> str:
