@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
 from ..base import files as store
 from ..base.dataclass import dataclass
-from ..base.errors import ActuatorError, Diagnostic, ExitCode
+from ..base.errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from . import streams
 from .options import (
     REPORTS,
@@ -91,6 +91,9 @@ class Job:
 
             store.require_folder(self.out)
             require_format(self.format, "--format")
+            if self.attach_studio and self.format == "html":
+                message = "--attach-studio attaches to a PDF, and --format html writes none"
+                raise UsageError(Diagnostic(message, "give --format both"))
             if self.date is not None:
                 require_date(self.date, "--date")
             date_from_environment()

@@ -98,11 +98,12 @@ def write(
         "source": _encodable(origin.source_text),
         "source_file": _attachment_name(_encodable(origin.source_name)),
         "run": _encodable(encoded(origin.run() | run, ensure_ascii=False, sort_keys=True)),
-        "attached": [
+    }
+    if attached:
+        data["attached"] = [
             {"name": x.name, "media": x.media, "content": x.content, "about": x.about}
             for x in attached
-        ],
-    }
+        ]
     pdf, images = _render(data, _timestamp(origin.date))
     contents = {f"{stem}.pdf": pdf, f"{stem}.png": images[0]}
     for index, image in enumerate(images[1:] if all_pages else (), 2):

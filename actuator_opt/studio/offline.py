@@ -118,13 +118,17 @@ def page_of(
     UsageError : the design cannot have an offline page
     InputError : the design has faults
     """
+    if path == "-":
+        message = "the offline page names the file of its design, so it needs a file"
+        raise UsageError(Diagnostic(message, "name a design file"))
     _require_recordable(read(path, set=set, plugins=plugins))
     studio = Studio(path, set=set, plugins=plugins, seed=seed)
     recorded = _RecordedDesign(studio, _session_of(studio))
     described = studio.describe()
     optimum = recorded.session.optimum
     data = recorded.data() | {"design": described | recorded.sliders(described["numbers"])}
-    data["design"]["command"] = ["actuator-opt", "optimise", *studio.words]
+    words = [described["file"], *studio.words[1:]]  # the folder is nobody else's business
+    data["design"]["command"] = ["actuator-opt", "optimise", *words]
     html = offline_page(
         name=described["name"],
         made=f"actuator-opt {VERSION}, design {optimum.evaluation.spec_hash[:16]}",
