@@ -89,11 +89,6 @@ class Studio:
             return nearest
         return self._session.optimum
 
-    @property
-    def session(self) -> Session | None:
-        """The session at the optimum of the design as read; None if it has none."""
-        return self._session
-
     # ---- what the page shows ----
 
     def describe(self) -> dict[str, Any]:
@@ -378,6 +373,11 @@ class Studio:
         actuator = self.actuator.changed(changed)
         files = report(result, folder=self._out, actuator=actuator, command=self.command(changed))
         return [str(file.path) for file in files]
+
+    @property
+    def session(self) -> Session | None:
+        """The session at the optimum of the design as read; None if it has none."""
+        return self._session
 
     @property
     def words(self) -> list[str]:
