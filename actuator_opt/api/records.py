@@ -357,7 +357,7 @@ def write_identification(
     origin, place = page_of(
         identification.bench.design, "_identification", beside=record.file_name, **paper
     )
-    run = {"record": record.file_name, "record_sha256": samples_hash(record)}
+    run: dict[str, Any] = {"record": record.file_name, "record_sha256": samples_hash(record)}
     return writer.write(page(identification), origin, **place, **run)
 
 
@@ -384,5 +384,5 @@ def write_calibration(calibrated: Calibrated, **paper: Unpack[ReportArguments]) 
     record = calibrated.calibration.identification.record
     origin, place = page_of(actuator.design, "_calibration", beside=record.file_name, **paper)
     origin = replace(origin, source_text=to_yaml(actuator.design, actuator.source))
-    run = {"record": record.file_name, "record_sha256": samples_hash(record)}
+    run: dict[str, Any] = {"record": record.file_name, "record_sha256": samples_hash(record)}
     return writer.write(calibrated.page(), origin, **place, **run)

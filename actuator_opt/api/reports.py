@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..evaluation.rings import Place
     from ..optimisation.result import Optimisation
     from ..pages import ReportFile, Table
-    from ..rendering.blocks import Block, Origin
+    from ..rendering.blocks import AttachedFile, Block, Origin
     from ..simulation import Simulation
     from ..simulation.verification import Verification
     from ..studies.seal import SealStudy
@@ -123,6 +123,7 @@ def report_design(
     *,
     extra_tables: Sequence[Table] = (),
     dynamics_verified: Verification | None = None,
+    attached: Sequence[AttachedFile] = (),
     **paper: Unpack[ReportArguments],
 ) -> list[ReportFile]:
     """Write the report of an evaluation or an optimisation; parameters as for `report`."""
@@ -133,9 +134,10 @@ def report_design(
     design = subject.design if isinstance(subject, Evaluation) else subject.best
     origin, place = page_of(design, **paper)
     tables = [*published(evaluation), *extra_tables, *verification_tables(dynamics_verified)]
-    report = page(subject, extra_tables=tables, seals=_seal_studies(prepare(design)))
+    seals = _seal_studies(prepare(design))
+    report = page(subject, extra_tables=tables, seals=seals, attached=attached)
     run = {"actuator_opt": evaluation.version, "result": outcome(subject)}
-    return write(report, origin, **place, **run)
+    return write(report, origin, **place, attached=attached, **run)
 
 
 def published(subject: Evaluation | Simulation) -> list[Block]:

@@ -354,9 +354,9 @@ def report(
     seed : seed of the samples for the yield estimate
     plugins : the user's metrics and constraints, for a design that is not an `Actuator` yet, or a
         run
-    more : for an evaluation or an optimisation, `dynamics_verified` (from `verify_dynamics`) and
-        `extra_tables`; for a simulation, `scenario` as read, `measured` and `sensitivities`; for a
-        seal, `sheet` (False: only the map)
+    more : for an evaluation or an optimisation, `dynamics_verified` (from `verify_dynamics`),
+        `extra_tables`, and `attached`, further files of the PDF; for a simulation, `scenario` as
+        read, `measured` and `sensitivities`; for a seal, `sheet` (False: only the map)
 
     Returns
     -------

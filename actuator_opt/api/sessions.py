@@ -38,6 +38,7 @@ from .actuator import (
 
 if TYPE_CHECKING:
     from ..optimisation.actuator import ActuatorProblem
+    from ..optimisation.resolve.steps import Valley
     from ..optimisation.result import Optimisation
     from ..optimisation.solution import Solution
     from ..optimisation.warm_start import WarmStart
@@ -288,6 +289,24 @@ class Session(OneLine):
     def in_short(self) -> tuple[str, str]:
         """Name and objective of the design."""
         return self.optimum.design.name, self.optimum.objective_text
+
+    @property
+    def problem(self) -> ActuatorProblem:
+        """The optimisation problem of the design as read."""
+        return self._warm.actuator
+
+    @property
+    def valleys(self) -> Sequence[Valley]:
+        """The known local optima, the best first."""
+        return self._warm.valleys
+
+    @property
+    def rough_gradients(self) -> tuple[str, ...]:
+        """Labels of objective and limits whose gradients are finite differences."""
+        evaluator = self._warm.evaluator
+        labels = np.array(["objective", *evaluator.problem.constraint_names])
+        rough = evaluator.difference_rows if evaluator.complex_works else np.ones(len(labels), bool)
+        return tuple(labels[rough].tolist())
 
     def solve(
         self, changes: Changes, *, prices: bool = False, stop: Callable[[], bool] | None = None
@@ -672,7 +691,7 @@ class Session(OneLine):
                 )
             )  # fmt: skip
         if path not in self._differentiable:
-            self._differentiable[path] = self._only_read(path, float(numbers[path]))
+            self._differentiable[path] = self.only_read(path, float(numbers[path]))
         if not self._differentiable[path]:
             raise UsageError(
                 Diagnostic(
@@ -684,7 +703,7 @@ class Session(OneLine):
             )
         return float(numbers[path])
 
-    def _only_read(self, path: str, value: float) -> bool:
+    def only_read(self, path: str, value: float) -> bool:
         """Whether a number is only an input of the models: no other number or factor depends on it.
 
         Counter-example: a temperature also changes the factors on strengths.

@@ -20,6 +20,7 @@ from .job import COMMON, CommonOptions, Job, with_common_options
 from .options import (
     REPORTS,
     AllPages,
+    AttachStudio,
     Date,
     DesignFile,
     Format,
@@ -419,6 +420,7 @@ def report(
     date: Date = None,
     all_pages: AllPages = False,
     format: Format = "pdf",
+    attach_studio: AttachStudio = False,
     seed: Seed = 0,
     plugin: PluginFile = None,
     as_json: Json = False,
@@ -429,7 +431,7 @@ def report(
 
     job = Job(
         design, sets=sets, unset=unset, plugins=plugin, report=True, out=out, date=date,
-        all_pages=all_pages, format=format,
+        all_pages=all_pages, format=format, attach_studio=attach_studio, seed=seed,
         as_json=as_json, quiet=quiet,
     )  # fmt: skip
     recorded = run_store.is_name(design)

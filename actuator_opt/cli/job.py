@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
 from ..base import files as store
 from ..base.dataclass import dataclass
-from ..base.errors import ActuatorError, Diagnostic, ExitCode
+from ..base.errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from . import streams
 from .options import (
     REPORTS,
@@ -34,6 +34,7 @@ from .options import (
 
 if TYPE_CHECKING:
     from ..api import Actuator
+    from ..rendering.blocks import AttachedFile
 
 _T = TypeVar("_T")
 Files = Sequence[Mapping[str, Any]]
@@ -54,7 +55,8 @@ class Job:
         the design
     csv, write : files to write; neither may be an input file, except that `write` may be the design
     report : whether to write the report to the folder `out`, with `date` and in `format`;
-        `all_pages` adds images of all pages
+        `all_pages` adds images of all pages, and `attach_studio` attaches the offline page of the
+        studio, which searches with `seed`
     as_json, quiet, verbose : form of the answer; `verbose`: the whole text, not only the card
     record : whether to record the run
     paper, card : keyword arguments that only the report and the card of this command have
@@ -72,6 +74,8 @@ class Job:
     date: str | None = None
     all_pages: bool = False
     format: str = "pdf"
+    attach_studio: bool = False
+    seed: int = 0
     as_json: bool = False
     quiet: bool = False
     verbose: bool = True
@@ -87,6 +91,9 @@ class Job:
 
             store.require_folder(self.out)
             require_format(self.format, "--format")
+            if self.attach_studio and self.format == "html":
+                message = "--attach-studio attaches to a PDF, and --format html writes none"
+                raise UsageError(Diagnostic(message, "give --format both"))
             if self.date is not None:
                 require_date(self.date, "--date")
             date_from_environment()
@@ -182,8 +189,24 @@ class Job:
                 "all_pages": self.all_pages,
                 "format": self.format,
             }
+            if page := self._offline_page():
+                paper["attached"] = [page]
             files += verbs.report(result, **self._origin(), **paper, **also)
         return [file.to_dict() for file in files]
+
+    def _offline_page(self) -> AttachedFile | None:
+        """The offline page of the studio for the PDF; None with a warning if there can be none."""
+        from ..rendering.blocks import AttachedFile
+        from ..studio.offline import ABOUT, page_of
+
+        if not self.attach_studio:
+            return None
+        try:
+            page = page_of(self.design, set=self.set, plugins=self.plugins or (), seed=self.seed)
+        except ActuatorError as error:
+            streams.err(f"--attach-studio: not attached: {error.diagnostics[0].message}")
+            return None
+        return AttachedFile(f"{Path(self.design).stem}_studio.html", "text/html", page, ABOUT)
 
     def keep(self, result: object, **more: Any) -> None:
         """Record the run that gave a result; a failure only prints a message."""
@@ -248,7 +271,7 @@ _TARGETS = ("--out", "--write", "--csv", "--parquet", "--format", "--scheduler")
 
 _SILENT = (
     "--json", "--report", "--all-pages", "--quiet", "-q", "--verbose", "-v", "--relax-safety",
-    "--no-record", "--debug",
+    "--no-record", "--debug", "--attach-studio",
 )  # fmt: skip
 """Flags that do not affect the result."""
 

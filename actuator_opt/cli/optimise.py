@@ -15,6 +15,7 @@ from .options import (
     REPORTS,
     Algorithm,
     AllPages,
+    AttachStudio,
     Certify,
     Date,
     DesignFile,
@@ -79,6 +80,7 @@ def optimise(
     date: Date = None,
     all_pages: AllPages = False,
     format: Format = "pdf",
+    attach_studio: AttachStudio = False,
     seed: Seed = 0,
     plugin: PluginFile = None,
     no_record: NoRecord = False,
@@ -92,6 +94,7 @@ def optimise(
     job = Job(
         design, sets=sets, unset=unset, plugins=plugin, write=write,
         report=report or not as_json, out=out, date=date, all_pages=all_pages, format=format,
+        attach_studio=attach_studio, seed=seed,
         as_json=as_json, quiet=quiet, verbose=verbose, record=not no_record,
         card={"relax_safety": relax_safety},
     )  # fmt: skip

@@ -186,6 +186,14 @@ Format = Annotated[
         help="Format of the report: pdf (with PNG), html (needs no network), or both.",
     ),
 ]
+AttachStudio = Annotated[
+    bool,
+    typer.Option(
+        "--attach-studio",
+        help="Attach to the PDF a page on which limits of this design are dragged; it needs no "
+        "network.",
+    ),
+]
 REPORTS = Path("reports")
 UnusedOut = Annotated[Path, typer.Option("--out", hidden=True)]
 UnusedSeed = Annotated[int, typer.Option("--seed", hidden=True)]

@@ -26,6 +26,14 @@ Port = Annotated[
 NoBrowser = Annotated[
     bool, typer.Option("--no-browser", help="Open no browser; the address is printed anyway.")
 ]
+Offline = Annotated[
+    Path | None,
+    typer.Option(
+        "--offline",
+        metavar="FILE.html",
+        help="Write one file that works without this program and without network; start no server.",
+    ),
+]
 _OPENING = """<!DOCTYPE html><meta charset="utf-8"><meta name="referrer" content="no-referrer">
 <meta http-equiv="refresh" content="0; url={0}"><title>Studio</title><a href="{0}">Open</a>
 """
@@ -33,6 +41,7 @@ _OPENING = """<!DOCTYPE html><meta charset="utf-8"><meta name="referrer" content
 
 def studio(
     design: DesignFile,
+    offline: Offline = None,
     port: Port = None,
     no_browser: NoBrowser = False,
     sets: Set = None,
@@ -47,6 +56,7 @@ def studio(
 
     The page shows the section, masses, prices and trade-offs. It saves beside the design, and
     reports to --out. Ctrl-C ends the studio and prints the command that finds the same design.
+    With --offline, the page becomes one file for a colleague: it has the models of this design.
     """
     from ..base.files import require_folder
     from ..studio.choices import Choices
@@ -55,8 +65,14 @@ def studio(
     if design == "-":
         message = "the studio saves beside the design, so it needs a file"
         raise UsageError(Diagnostic(message, "name a design file"))
-    require_folder(out)
     job = Job(design, sets=sets, unset=unset, plugins=plugin, as_json=as_json, quiet=quiet)
+    if offline is not None:
+        if port is not None:
+            message = "--port belongs to a server, and --offline starts none"
+            raise UsageError(Diagnostic(message, "leave out one of them"))
+        _write_offline(job, offline, seed)
+        return
+    require_folder(out)
     with Server(port or 0) as server:
         opened = Choices.opened(design, set=job.set, plugins=plugin or (), out=out, seed=seed)
         if as_json:
@@ -71,6 +87,24 @@ def studio(
         except KeyboardInterrupt:
             (streams.err if as_json else streams.out)(opened.command())
             raise
+
+
+def _write_offline(job: Job, target: Path, seed: int) -> None:
+    """Write the offline page, or refuse before anything is computed."""
+    from ..base.files import require_apart, require_writable
+    from ..studio.offline import require_own, write_offline
+
+    if target.suffix not in (".html", ".htm"):
+        message = f"--offline {target}: not the name of a page"
+        raise UsageError(Diagnostic(message, "write e.g. knee.html"))
+    require_writable(target)
+    require_apart(target, job.design)
+    require_own(target)
+    written = job.run(
+        write_offline, target, job.design, set=job.set, plugins=job.plugins or (), seed=seed
+    )
+    files = [written.to_dict()]
+    job.answer(lambda: {"files": files}, files=files)
 
 
 def _fault(error: Exception) -> str:

@@ -100,7 +100,7 @@ def shapes(
     hidden : names of parts that are not drawn
     """
     geometry = geometry_module.derive(subject.values(varied), subject.design)
-    dimensions = np.stack([np.broadcast_to(leaf, (count,)) for leaf in _leaves(geometry)])
+    dimensions = np.stack([np.broadcast_to(leaf, (count,)) for leaf in sizes_of(geometry)])
     parts = [_Parts(subject, geometry, dimensions[:, k], hidden) for k in range(count)]
     actual = [part.drawn() for part in parts]
     templates: list[Template] = []
@@ -132,10 +132,42 @@ def same_dimensions(
     dimensions = []
     for subject, varied in (first, second):
         geometry = geometry_module.derive(subject.values(varied), subject.design)
-        dimensions.append([np.broadcast_to(value, (count,)) for value in _leaves(geometry)])
+        dimensions.append([np.broadcast_to(value, (count,)) for value in sizes_of(geometry)])
     return len(dimensions[0]) == len(dimensions[1]) and bool(
         np.allclose(dimensions[0], dimensions[1], rtol=0.0, atol=SAME, equal_nan=True)
     )
+
+
+def template_of(subject: PreparedDesign) -> Template:
+    """Template of one design, with the derivatives by all its dimensions.
+
+    Dimensions that are equal by construction, such as a shoulder and the ring on it, differ as soon
+    as only one is changed. A point that then appears between two others is left out.
+    """
+    geometry = geometry_module.derive(subject.values({}), subject.design)
+    dimensions = np.array([float(np.squeeze(size)) for size in sizes_of(geometry)])
+    parts = _Parts(subject, geometry, dimensions, ())
+    outlines, numbers = parts.drawn()
+    slopes = np.zeros((len(numbers), len(dimensions)))
+    for k in range(len(dimensions)):
+        moved = _like(outlines, *parts.drawn(k))
+        if len(moved) == len(numbers):
+            slopes[:, k] = np.round((moved - numbers) / STEP, 9)
+    return Template(outlines, numbers, slopes, dimensions)
+
+
+def _like(outlines: tuple[Outline, ...], moved: tuple[Outline, ...], numbers: Array) -> Array:
+    """The coordinates of moved outlines, without points that the outlines do not have."""
+    points, at = [], 0
+    known, present = ([p for o in parts for p in o.polygons] for parts in (outlines, moved))
+    for before, after in zip(known, present, strict=False):  # else no derivative
+        shape = numbers[at : at + 2 * len(after)].reshape(-1, 2)
+        at += 2 * len(after)
+        while len(shape) > len(before):
+            gaps = np.abs(shape - np.roll(shape, 1, axis=0)).sum(axis=1)
+            shape = np.delete(shape, np.argmin(gaps), axis=0)
+        points.append(shape.ravel())
+    return np.concatenate([*points, numbers[at:]])
 
 
 @dataclass(frozen=True)
@@ -177,7 +209,7 @@ def _form(outlines: tuple[Outline, ...]) -> list[object]:
     return [(o.part, o.material, o.kind, [len(p) for p in o.polygons]) for o in outlines]
 
 
-def _leaves(geometry: Geometry) -> list[Array]:
+def sizes_of(geometry: Geometry) -> list[Array]:
     """All dimensions as a list of numbers, in a fixed order."""
     leaves: list[Array] = []
 

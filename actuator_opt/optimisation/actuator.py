@@ -300,7 +300,9 @@ class ActuatorProblem:
         if self.scales:
             values = values / self._divisors(numbers)
         goals = (self.goal, *self.goals)
-        return [goal.value(run.computed, self.subject.cases) for goal in goals], _bounded(values)
+        return [goal.value(run.computed, self.subject.cases) for goal in goals], bounded_margin(
+            values
+        )
 
     def _divisors(self, numbers: Numbers) -> Array:
         """Divisors (rows, 1 or designs) of the margins: `scales` where the limit is 0, else 1."""
@@ -324,7 +326,7 @@ def _scales(rows: Sequence[LimitRow]) -> tuple[float, ...]:
     return tuple(scales) if any(scale > 1 for scale in scales) else ()
 
 
-def _bounded(margin: Array) -> Array:
+def bounded_margin(margin: Array) -> Array:
     """Compress a positive margin m to m/(1 + m) for the solver, so that infinity becomes 1.
 
     A negative margin stays as it is. Sign, and value and slope at m = 0, do not change.

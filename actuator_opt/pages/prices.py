@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ..base.quantities import Quantity
 from ..evaluation.result import Requirement
 from ..optimisation.price_table import PER_CENT, STRAIGHT, Sensitivity, display_of, short_name
 from ..optimisation.result import Optimisation
 from ..rendering import text
-from ..rendering.blocks import Block, Cell, Column, Drawing, Medium, Notes, Reach, Table, soft
+from ..rendering.blocks import (
+    AttachedFile,
+    Block,
+    Cell,
+    Column,
+    Drawing,
+    Medium,
+    Notes,
+    Reach,
+    Table,
+    soft,
+)
 from ..rendering.ink import Ink
 from ..rendering.text import DASH
 from ..rendering.tornado import MOST, TornadoBar, bars
@@ -39,6 +52,15 @@ def price_blocks(optimisation: Optimisation, *, moving: bool = False) -> list[Bl
         moves(optimisation, shown=moving),
     ]
     return [block for block in blocks if block is not None]
+
+
+def attached_blocks(attached: Sequence[AttachedFile]) -> list[Block]:
+    """Block that names the files attached to the report, besides its input."""
+    if not attached:
+        return []
+    how = "To open it, save it from the attachments of this PDF (paper clip)."
+    lines = [f"{file.name}: {file.about}. {how}" for file in attached]
+    return [Notes("Attached to this PDF", lines, on="paper")]
 
 
 # ---- prices ----

@@ -17,6 +17,7 @@ from ..optimisation.price_table import PER_CENT
 from ..optimisation.result import Optimisation
 from ..rendering import heights, text
 from ..rendering.blocks import (
+    AttachedFile,
     Block,
     Cell,
     Column,
@@ -63,6 +64,7 @@ def page(
     *,
     extra_tables: Sequence[Block] = (),
     seals: Sequence[SealStudy] = (),
+    attached: Sequence[AttachedFile] = (),
 ) -> Page:
     """The page of a design.
 
@@ -71,6 +73,7 @@ def page(
     subject : the evaluation or optimisation to report
     extra_tables : further tables and drawings, before the appendix
     seals : studies of the piston or rod seals, each on its own sheet
+    attached : further files attached to the PDF, which the page names after the prices
     """
     evaluation, optimisation = parts_of(subject)
     drawing = section.section(evaluation)
@@ -104,6 +107,8 @@ def page(
     blocks += [*duty.duty_blocks(evaluation), *later]
     if optimisation is not None:
         blocks += trust.trust_blocks(optimisation) + prices.price_blocks(optimisation)
+    blocks += prices.attached_blocks(attached)
+    if optimisation is not None:
         blocks += optimum.robust_tables(optimisation)
         blocks += [masses(evaluation)] if optimisation.variables else []
     blocks += [block for study in seals for block in seal.blocks(study)]

@@ -445,6 +445,24 @@ class Origin:
 
 
 @dataclass(frozen=True, slots=True)
+class AttachedFile:
+    """A text to attach to the PDF of a report, besides the input.
+
+    Parameters
+    ----------
+    name : plain name of the file
+    media : media type, such as "text/html"
+    content : its text
+    about : what it is, in words
+    """
+
+    name: str
+    media: str
+    content: str
+    about: str
+
+
+@dataclass(frozen=True, slots=True)
 class ReportFile:
     """A file of a report, with its hash and its number of sheets."""
 

@@ -22,6 +22,7 @@ from ..version import VERSION
 from . import html, paper_plain as fallback
 from .blocks import (
     FARTHEST,
+    AttachedFile,
     Bar,
     Block,
     Cell,
@@ -66,6 +67,7 @@ def write(
     stem: str,
     all_pages: bool = False,
     format: str = "pdf",
+    attached: Sequence[AttachedFile] = (),
     **run: Any,
 ) -> list[ReportFile]:
     """Write a page into a folder: ``STEM.pdf`` and ``STEM.png`` (first sheet), or ``STEM.html``.
@@ -77,6 +79,7 @@ def write(
     folder, stem : target; the folder is made if missing
     all_pages : whether to write images of the other sheets, too, as ``STEM-page-N.png``
     format : "pdf" (with PNG), "html", or "both"
+    attached : further files to attach to the PDF
     run : further facts about the run, attached to the PDF
 
     Returns
@@ -96,6 +99,11 @@ def write(
         "source_file": _attachment_name(_encodable(origin.source_name)),
         "run": _encodable(encoded(origin.run() | run, ensure_ascii=False, sort_keys=True)),
     }
+    if attached:
+        data["attached"] = [
+            {"name": x.name, "media": x.media, "content": x.content, "about": x.about}
+            for x in attached
+        ]
     pdf, images = _render(data, _timestamp(origin.date))
     contents = {f"{stem}.pdf": pdf, f"{stem}.png": images[0]}
     for index, image in enumerate(images[1:] if all_pages else (), 2):

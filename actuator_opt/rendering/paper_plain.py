@@ -29,6 +29,7 @@ def render(data: Mapping[str, Any], timestamp: int) -> tuple[bytes, list[bytes]]
     files = [
         (data["source_file"], "application/yaml", data["source"].encode()),
         ("actuator-opt-run.json", "application/json", data["run"].encode()),
+        *((x["name"], x["media"], x["content"].encode()) for x in data.get("attached", ())),
     ]
     return embed(pdf, files, timestamp), images
 

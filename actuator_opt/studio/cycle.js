@@ -146,7 +146,7 @@ function offerCycles(names) {
   if (byId("cycle").options.length) return;
   byId("cycle").replaceChildren(...names.map((name) => node("option", { value: name, textContent: name })));
 }
-RESTING.push(fetchCycle);
+PARTS.push({ described: (design) => offerCycles(design.cycles ?? []), rest: fetchCycle });
 byId("cycle").addEventListener("change", settle);
 byId("duty").addEventListener("toggle", () => { if (byId("duty").open) { paintCycle(); if (S.shown) settle(); } else stopPlaying(); });
 for (const id of ["shown-1", "shown-2"]) byId(id).addEventListener("change", paintCycle);

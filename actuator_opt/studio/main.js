@@ -11,9 +11,10 @@ function paint() {
   document.body.classList.toggle("stale", searching || (!truthNow.feasible && current));
   document.body.classList.toggle("about", !searching && !current && !(forecast && forecast.section));
   const objective = forecast ? forecast.objective : design.objective;
-  const nothing = current && !truthNow.feasible;
-  byId("objective").textContent = searching ? "no design found yet, searching …" : nothing ? "nothing fits" : objective === null ? "no objective" : `${objectiveText(objective, forecast)}${current || forecast ? "" : " …"}`;
-  byId("objective").className = current ? "" : "about";
+  const nothing = current && !truthNow.feasible, near = current && typeof design.within === "number";
+  const within = near ? `, within ${withUnit(trimmed(design.within * S.goal.factor, 2), S.goal.unit)}` : "";
+  byId("objective").textContent = searching ? "no design found yet, searching …" : nothing ? "nothing fits" : objective === null ? "no objective" : `${objectiveText(objective, forecast || near)}${within}${current || forecast ? "" : " …"}`;
+  byId("objective").className = current && !near ? "" : "about";
   const pinned = S.A && S.A.shown;
   byId("against").textContent = pinned && !nothing && objective !== null && (current || forecast) ? `A ${objectiveText(pinned.objective)}, ${signed((objective - pinned.objective) * S.goal.factor, 3)}` : "";
   drawSection(forecast && forecast.section ? forecast.section : design.section, pinned && pinned.section);
@@ -26,7 +27,7 @@ function paint() {
   if (current) { paintMasses(design, pinned); paintDimensions(design, pinned); paintHolds(truthNow); }
   paintPrices();
   paintButtons();
-  CHOICES.tell();
+  for (const part of PARTS) part.painted?.();
 }
 const EXTENT = { left: Infinity, right: -Infinity, radius: 0 };
 function drawSection(section, pinned) {
@@ -111,7 +112,7 @@ function paintButtons() {
   byId("pin").textContent = S.A ? "Unpin A" : "Pin A";
   byId("pin").setAttribute("aria-pressed", String(Boolean(S.A)));
   byId("swap").disabled = !S.A || !fits;
-  byId("save").disabled = byId("report").disabled = !fits;
+  FILES.enable(fits);
   document.body.classList.toggle("pinned", Boolean(S.A));
 }
 function announce() {
@@ -175,56 +176,11 @@ function swap() {
 const undo = () => { if (!byId("undo").disabled) { travel(S.past, S.future); paintButtons(); } };
 const redo = () => { if (!byId("redo").disabled) { travel(S.future, S.past); paintButtons(); } };
 
-// ---- files ----
-let REPLACING = { name: "", sha256: "" };
-function openSave() {
-  if (byId("save").disabled) return;
-  REPLACING = { name: "", sha256: "" };
-  byId("save-note").textContent = "";
-  byId("save-yes").textContent = "Save";
-  byId("file").value ||= S.design.suggested;
-  byId("save-dialog").showModal();
-  byId("file").select();
-}
-async function saveFile() {
-  let name = byId("file").value.trim();
-  if (!name.endsWith(".yaml")) name += ".yaml";
-  const replacing = REPLACING.name === name ? REPLACING.sha256 : "";
-  byId("save-yes").disabled = true;
-  try {
-    const saved = await ask("save", { changes: wishes(S.changes), name, replacing });
-    if (saved.written) {
-      byId("save-dialog").close();
-      note(`Saved ${saved.name} beside ${S.design.file}.`);
-      byId("live").textContent = `Saved ${saved.name}`;
-    } else {
-      REPLACING = saved;
-      byId("save-note").textContent = `Replace ${saved.name}? It exists${replacing ? ", and has changed just now" : ""}.`;
-      byId("save-yes").textContent = "Replace";
-    }
-  } catch (fault) {
-    byId("save-note").textContent = fault.message;
-  } finally {
-    byId("save-yes").disabled = false;
-  }
-}
-async function writeReport() {
-  byId("report").disabled = true;
-  note("The report is being written …");
-  try {
-    const { files } = await ask("report", { changes: wishes(S.changes) });
-    note(`Report: ${files.join(", ")}`);
-  } catch (fault) {
-    note(fault.message);
-  }
-  paintButtons();
-}
-
 // ---- keys ----
 addEventListener("keydown", (event) => {
   const typing = event.target.matches("input[type=text]");
   if (document.querySelector("dialog[open]")) {
-    if (event.key === "Enter" && event.target === byId("file")) { event.preventDefault(); saveFile(); }
+    FILES.typed(event);
     return;
   }
   const letter = event.key.toLowerCase();
@@ -232,13 +188,11 @@ addEventListener("keydown", (event) => {
     event.preventDefault();
     (letter === "y" || event.shiftKey ? redo : undo)();
   } else if (!event.ctrlKey && !event.metaKey && !event.altKey && !typing && !event.target.matches("select")) {
-    const act = { p: pin, x: swap, s: openSave, "?": () => byId("help-dialog").showModal() }[letter];
+    const act = { p: pin, x: swap, ...FILES.keys, "?": () => byId("help-dialog").showModal() }[letter];
     if (act) { event.preventDefault(); act(); }
   }
 });
-for (const [id, act] of Object.entries({ undo, redo, pin, swap, save: openSave, report: writeReport, "save-yes": saveFile })) byId(id).addEventListener("click", act);
-byId("file").addEventListener("input", () => { byId("save-yes").textContent = "Save"; byId("save-note").textContent = ""; REPLACING = { name: "", sha256: "" }; });
-byId("save-no").addEventListener("click", () => byId("save-dialog").close());
+for (const [id, act] of Object.entries({ undo, redo, pin, swap, ...FILES.acts })) byId(id).addEventListener("click", act);
 byId("help").addEventListener("click", () => byId("help-dialog").showModal());
 byId("help-close").addEventListener("click", () => byId("help-dialog").close());
 byId("across").addEventListener("change", () => { paintTrade(); settle(); });
@@ -273,9 +227,7 @@ function describe(design) {
   const group = (label, rows) => node("optgroup", { label }, ...rows.map((row) => node("option", { value: row.path, textContent: row.label })));
   byId("up").replaceChildren(node("option", { value: "", textContent: S.goal.label }), ...(design.best.length ? [group(`with the same ${S.goal.label}`, design.best)] : []), group("dimensions", design.dimensions));
   byId("up").value = [...design.best, ...design.dimensions].some((row) => row.path === up) ? up : "";
-  CHOICES.offer(design);
-  CHOICES.show();
-  offerCycles(design.cycles ?? []);
+  for (const part of PARTS) part.described?.(design);
 }
 async function start() {
   const hatching = shape("svg", { class: "hidden", "aria-hidden": "true", width: 0, height: 0 });
@@ -288,7 +240,7 @@ async function start() {
   S.design = data.design;
   document.title = `${S.design.name}: studio`;
   byId("name").textContent = S.design.name;
-  byId("beside").textContent = S.design.file;
+  FILES.open(S.design);
   const limit = (row) => row.path.startsWith("requirements.");
   for (const row of S.design.numbers) if (row.asked && limit(row)) add("asked", row);
   for (const row of S.design.numbers) if (row.asked && !limit(row)) add("asked", row);

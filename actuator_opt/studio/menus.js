@@ -113,6 +113,7 @@ const CHOICES = {
     compared.menu.tell(`${objectiveText(objective)}${step}${searched ? "" : "; searching for a better one …"}`);
   },
 };
+PARTS.push({ described(design) { CHOICES.offer(design); CHOICES.show(); }, shown: CHOICES.show, painted: CHOICES.tell });
 function difference(now, before) {
   const step = (now - before) * S.goal.factor;
   return Math.abs(step) < 1e-5 * Math.abs(S.goal.factor * before) ? "no change" : `${signed(step, 3)}${S.goal.unit ? ` ${S.goal.unit}` : ""}`;

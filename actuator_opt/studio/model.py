@@ -168,11 +168,11 @@ class Studio:
             "numbers": [row for row in rows if row is not None],
             "dimensions": [
                 {"path": row.path, "label": words_of(row.path), "low": row.lower, "high": row.upper}
-                | _scale(quantity_of(row.path, design))
+                | scale_of(quantity_of(row.path, design))
                 for row in optimum.variables
             ],
             "best": [
-                {"path": path, "label": f"best {term_of(metric.name)}"} | _scale(metric.quantity)
+                {"path": path, "label": f"best {term_of(metric.name)}"} | scale_of(metric.quantity)
                 for path in self._tradable
                 for metric in [optimum.evaluation.metrics[path.split(".")[1]]]
             ],
@@ -204,7 +204,7 @@ class Studio:
             "size": self._size(quantity, value),
             "lower": quantity.lower if math.isfinite(quantity.lower) else None,
             "upper": quantity.upper if math.isfinite(quantity.upper) else None,
-            **_scale(quantity),
+            **scale_of(quantity),
         }
 
     def first(self, changes: Numbers, stop: Stop) -> dict[str, Any]:
@@ -408,8 +408,8 @@ class Studio:
                 "up": price.slope_up,
                 "low": price.holds[0],
                 "high": price.holds[1],
-                "below": _plain(price.changes[0]),
-                "above": _plain(price.changes[1]),
+                "below": plain_words(price.changes[0]),
+                "above": plain_words(price.changes[1]),
                 "movement": price.movement,
             }
             for price in found
@@ -553,6 +553,16 @@ class Studio:
         files = report(result, folder=self._out, actuator=actuator, command=self.command(changed))
         return [str(file.path) for file in files]
 
+    @property
+    def session(self) -> Session | None:
+        """The session at the optimum of the design as read; None if it has none."""
+        return self._session
+
+    @property
+    def words(self) -> list[str]:
+        """Words of the command line that name the design, its changes and plugins."""
+        return [*self._words]
+
     def command(self, changed: Mapping[str, float] | None = None) -> str:
         """The command line that finds the same design; by default that shown last."""
         settings = self._settings(self.present if changed is None else changed)
@@ -597,7 +607,7 @@ def _options(name: str, values: Any) -> list[str]:
     return [word for value in values for word in (name, value)]
 
 
-def _scale(quantity: Quantity) -> dict[str, Any]:
+def scale_of(quantity: Quantity) -> dict[str, Any]:
     """Unit of a quantity: displayed value = offset + factor * SI value."""
     offset = quantity.to_display(0.0)
     return {
@@ -613,7 +623,7 @@ def _goal(optimum: Optimisation) -> dict[str, Any]:
     name = optimum.objective_metric
     metric = optimum.best_evaluation.metrics.get(name)
     plain = {"unit": "", "typed": "", "offset": 0.0, "factor": 1.0}
-    scale = plain if metric is None else _scale(metric.quantity)
+    scale = plain if metric is None else scale_of(metric.quantity)
     label = "objective" if metric is None else term_of(name)
     maximise = _maximises(optimum)
     return {"label": label, "mass": name == "mass", "maximise": maximise, **scale}
@@ -624,7 +634,7 @@ def _maximises(optimum: Optimisation) -> bool:
     return objective is not None and objective.aim == "max"
 
 
-def _plain(change: str | None) -> str | None:
+def plain_words(change: str | None) -> str | None:
     """Which limit becomes active or inactive, in words for a reader."""
     return None if change is None else text.pretty(change.replace("_", " "))
 

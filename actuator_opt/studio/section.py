@@ -18,7 +18,7 @@ from ..joints.joint import Polygon
 MM = 1000.0
 STEP = 1e-4
 """Relative change of a number for the difference quotient of the section."""
-_LENGTHS = {"bore": "bore ⌀", "rod": "rod ⌀", "closed_length": "closed length"}
+LENGTHS = {"bore": "bore ⌀", "rod": "rod ⌀", "closed_length": "closed length"}
 
 
 def _points(parts: Sequence[Outline], lines: Sequence[Polygon]) -> Array:
@@ -39,7 +39,7 @@ def drawing(
         "parts": [*map(part_of_section, parts), *([threads] if lines else [])],
         "numbers": np.round(_points(parts, lines), 4).tolist(),
         "lengths": " · ".join(
-            f"{words} {MM * lengths[name]:.4g}" for name, words in _LENGTHS.items()
+            f"{words} {MM * lengths[name]:.4g}" for name, words in LENGTHS.items()
         )
         + " mm",
     }

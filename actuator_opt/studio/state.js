@@ -104,7 +104,9 @@ function predicted() {
 // ---- at rest: prices, the card if nothing fits, curves nearest first ----
 const UNKNOWN = { points: [], budget: null, none: false };
 const REST = { timer: 0, ranked: new Map(), done: false };
-const RESTING = [];  // what else is asked at rest: functions of changes and stale, false if it has to be asked again
+// Parts that not every page has, each with some of these: described(design), shown(), painted(), and
+// rest(changes, stale), which asks for more at rest and returns false if it has to ask again.
+const PARTS = [];
 
 function settle() {
   clearTimeout(REST.timer);
@@ -139,7 +141,7 @@ async function rest() {
     else truth(data, S.changes);
     return;
   }
-  for (const act of RESTING) if (!(await act(changes, stale))) return;
+  for (const part of PARTS) if (part.rest && !(await part.rest(changes, stale))) return;
   const standing = { key, changes: S.changes, shown: S.shown };
   const answer = await ask("prices", { changes, paths: [...S.sliders].filter(([, slider]) => !slider.box.hidden).map(([path]) => path), draw: true });
   if (stale()) return;
@@ -239,7 +241,7 @@ function travel(from, to) {
 }
 function showChanges() {
   for (const [path, slider] of S.sliders) { slider.refuse(""); slider.show(S.changes[path] ?? slider.file); }
-  CHOICES.show();
+  for (const part of PARTS) part.shown?.();
   solve();
   paint();
 }

@@ -236,8 +236,8 @@ def test_the_parser_knows_every_option_of_the_commands():
     known = {word for action in repeating.parser()._actions for word in action.option_strings}
     idle = {
         "--out", "--json", "--quiet", "-q", "--report", "--write", "--no-record", "--help", "-h",
-        "--csv", "--debug", "--format", "--all-pages", "--scheduler", "--verbose", "-v",
-        "--relax-safety",
+        "--csv", "--debug", "--format", "--all-pages", "--attach-studio", "--scheduler",
+        "--verbose", "-v", "--relax-safety",
     }  # fmt: skip
     commands = cli.command_line().commands
     for verb in repeating.OPTIMISED + repeating.EVALUATED + repeating.FRONTS:

@@ -1,7 +1,7 @@
 "use strict";
 /* The machine of machine.h for pages: values of a program, with derivatives along directions.
 
-   const program = Machine.program(data);             // data: `Program.for_page()` of Python
+   const program = Machine.program(data);             // data: `Program.for_page()` of Python, or its arrays
    const { values, slopes } = Machine.run(program, inputs, seeds);
 
    `inputs` has a number for each input. `seeds` is optional: a list of directions, each the change
@@ -18,8 +18,9 @@ const Machine = (() => {
     .map((name) => NAMES.indexOf(name)));
   const WORDS = 5, FIRST = 1, SECOND = 2, THIRD = 4, RESULT = 8, FROZEN = 16;
 
-  function unpacked(text, Kind) {
-    const bytes = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
+  function unpacked(content, Kind) {
+    if (content instanceof Kind) return content;
+    const bytes = Uint8Array.from(atob(content), (character) => character.charCodeAt(0));
     return new Kind(bytes.buffer);
   }
 
