@@ -67,8 +67,8 @@ def content(path: Path) -> bytes:
 # --- words ---------------------------------------------------------------------------------------
 
 
-def prose(text: str) -> Iterator[tuple[int, str]]:
-    """Lines of a page outside code, with their number; code in backquotes is left out."""
+def prose(text: str, *, code: bool = False) -> Iterator[tuple[int, str]]:
+    """Numbered lines of a page outside blocks of code; `code` keeps what is in backquotes."""
     fence = ""
     for number, line in enumerate(text.splitlines(), 1):
         marks = re.match(r"\s*(`{3,}|~{3,})(.*)", line)
@@ -79,7 +79,10 @@ def prose(text: str) -> Iterator[tuple[int, str]]:
             fence = ""
             continue
         if not fence:
-            yield number, re.sub(r"(\{\w+\})?`[^`]*`|\$[^$]*\$|\]\([^)]*\)", "", line)
+            yield (
+                number,
+                line if code else re.sub(r"(\{\w+\})?`[^`]*`|\$[^$]*\$|\]\([^)]*\)", "", line),
+            )
 
 
 @cache
