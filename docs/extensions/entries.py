@@ -9,7 +9,8 @@ from actuator_opt.api import explaining, reference
 from actuator_opt.api.explaining import Explanation
 from actuator_opt.api.reference import NO_UNIT, Entry
 from actuator_opt.design.materials import load_library
-from actuator_opt.design.structure import templates
+from actuator_opt.design.scenario.model import Scenario
+from actuator_opt.design.structure import entries as keys_of, templates
 
 from .book import Book
 from .markdown import escaped, fence, page, phrase, table
@@ -45,6 +46,7 @@ INTRO = {
     "friction law": "The friction law of a seal: `seals.piston.friction` and `seals.rod.friction`.",
     "material property": "What a material of the library or of a design file states.",
 }
+SCENARIO = "reference/scenario-keys"
 GROUPS = {
     "metal": "Metals",
     "ply": "Plies",
@@ -77,6 +79,8 @@ def register(book: Book) -> None:
     for entry in reference.all_entries():
         if entry.kind != "term":
             book.register(ROLES[entry.kind], entry.name, _place(entry), *entry.aliases)
+    for name in keys_of(Scenario):
+        book.register("scenario", name, SCENARIO)
 
 
 def write(book: Book) -> None:
@@ -89,6 +93,7 @@ def write(book: Book) -> None:
             f"# {title}", intro, _overview(entries), *(_section(entry, book) for entry in entries)
         )
     _write_keys(book, [*found["block"], *found["PATH"]])
+    _write_scenario_keys(book)
     _write_materials(book)
 
 
@@ -175,6 +180,34 @@ def _write_keys(book: Book, entries: list[Entry]) -> None:
         "list. In the terminal: `actuator-opt list paths`.",
         table(("block", "meaning"), tops),
         fence("{toctree}", ":hidden:\n\n" + "\n".join(w.rpartition("/")[2] for w in groups)),
+    )
+
+
+def _write_scenario_keys(book: Book) -> None:
+    """Keys of a scenario file: a table for each block."""
+    values, parts = templates(Scenario), []
+    for name, top in keys_of(Scenario).items():
+        inside = {p: k for p, k in values.items() if re.split("[.[]", p)[0] == name} or {name: top}
+        rows = []
+        for path, key in inside.items():
+            entry = reference.key_entry(path, key)
+            book.require("scenario key", path, definition=key.meaning or top.section or path)
+            default = "required" if key.required else "" if key.default is None else (
+                explaining.value_text(entry.quantity, key.default)
+            )  # fmt: skip
+            valid = "" if entry.quantity is None else explaining.range_of(entry.quantity)
+            words = ", ".join(f"`{word}`" for word in key.choices)
+            rows.append((f"`{path}`", escaped(entry.unit), phrase(str(default)),
+                         words or phrase(valid), phrase(entry.phrase)))  # fmt: skip
+        meaning = phrase(top.meaning) if top.section is not None else ""
+        parts.append(page(
+            f"{book.at('scenario', name)}\n## {escaped(name)}", meaning,
+            table(("PATH", "unit", "default", "range or words", "meaning"), rows),
+        ).rstrip())  # fmt: skip
+    book.pages[SCENARIO] = page(
+        "# Scenario keys",
+        "A scenario is a test of a design over time ([scenarios](/how-to/scenarios.md)).",
+        *parts,
     )
 
 

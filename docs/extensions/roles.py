@@ -18,7 +18,7 @@ from .names import known_label
 
 KINDS = (
     "source", "metric", "key", "model", "command", "material", "check", "joint", "seal", "law",
-    "property", "python",
+    "property", "python", "scenario",
 )  # fmt: skip
 
 
