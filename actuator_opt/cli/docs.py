@@ -15,7 +15,7 @@ from .options import REPORTS, Json, Quiet, UnusedOut, UnusedSeed
 Topic = Annotated[
     list[str] | None,
     typer.Argument(
-        metavar="[TOPIC]",
+        metavar="TOPIC",
         help="Metric, PATH, command, material, source, term, or title of a page; default: the "
         "first page.",
     ),
