@@ -179,7 +179,7 @@ def _terms() -> Iterator[Entry]:
         yield Entry(term.name, "term", term.definition, aliases=term.aliases)
 
 
-def _key(path: str, key: KeyEntry) -> Entry:
+def key_entry(path: str, key: KeyEntry) -> Entry:
     """Entry of a value of the design file."""
     from ..design.kinds import MaterialName
 
@@ -193,7 +193,7 @@ def _key(path: str, key: KeyEntry) -> Entry:
 def _paths() -> Iterator[Entry]:
     from ..design.structure import templates
 
-    return (_key(path, key) for path, key in templates().items())
+    return (key_entry(path, key) for path, key in templates().items())
 
 
 def _blocks() -> Iterator[Entry]:
@@ -277,7 +277,7 @@ def _path(word: str, metrics: Mapping[str, Quantity] | None) -> Entry | None:
     if generic not in known and (dotted := ".".join(word.casefold().split())) in known:
         word = generic = dotted
     if generic in known:
-        return replace(_key(generic, known[generic]), name=word.strip())
+        return replace(key_entry(generic, known[generic]), name=word.strip())
     if generic in blocks():
         return next(entry for entry in _blocks() if entry.name == generic)
     ending = [path for path in known if path.endswith(f".{generic}")]
@@ -285,7 +285,7 @@ def _path(word: str, metrics: Mapping[str, Quantity] | None) -> Entry | None:
     least = min((path.count(".") for path in designed), default=0)
     nearest = [path for path in designed if path.count(".") == least]
     if len(nearest) == 1:
-        return _key(nearest[0], known[nearest[0]])
+        return key_entry(nearest[0], known[nearest[0]])
     head, _, rest = word.strip().partition(".")
     if head not in ("requirements", "materials") or not rest:
         return None
@@ -305,7 +305,7 @@ def _path(word: str, metrics: Mapping[str, Quantity] | None) -> Entry | None:
 def unknown(word: str) -> UsageError:
     """The error for an unknown word, with the nearest names by letters and meaning."""
     known = {entry.name: f"{entry.phrase} {' '.join(entry.aliases)}" for entry in all_entries()}
-    near = _nearest(ranked(word, known, LEAST))
+    near = nearest_names(ranked(word, known, LEAST))
     advice = f"nearest: {', '.join(near)}" if near else "see: actuator-opt list metrics"
     return UsageError(Diagnostic(f'"{shown(word)}" is no name known here', advice))
 
@@ -353,7 +353,7 @@ def catalogue(
     return Catalogue(kind, tuple(entries), design is not None)
 
 
-def _nearest(found: Sequence[tuple[float, str, bool]]) -> list[str]:
+def nearest_names(found: Sequence[tuple[float, str, bool]]) -> list[str]:
     """Names of at most `NEAREST` entries that are hardly less near than the first."""
     return [name for score, name, _ in found if score >= ALMOST * found[0][0]][:NEAREST]
 
@@ -372,7 +372,7 @@ def _near(word: str, entries: Sequence[Entry], kind: str) -> list[Entry]:
         or scores.get(entry.name, 0.0) >= MATCH
     ]
     if not kept:
-        near = ", ".join(_nearest(found))
+        near = ", ".join(nearest_names(found))
         advice = f"nearest: {near}" if near else f"see: actuator-opt list {kind}"
         raise UsageError(Diagnostic(f'no {kind} match "{shown(word)}"', advice))
     return kept
@@ -434,7 +434,7 @@ def _stated(design: Design, entries: Sequence[Entry]) -> list[Entry]:
         if len(loc) == 1:
             continue
         number = number_of(value)
-        entry = replace(_key(spell(loc, design), key), quantity=key.quantity(value))
+        entry = replace(key_entry(spell(loc, design), key), quantity=key.quantity(value))
         stated.append(replace(entry, value=word_of(value) if number is None else number))
         templates.add(re.sub(r"\[\d+\]", "[*]", spell(loc)))
     return [*stated, *(entry for entry in entries if entry.name not in templates)]
