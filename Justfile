@@ -28,6 +28,10 @@ bench:
 samples:
     .venv/bin/python reports/make_samples.py
 
+# the documentation, as docs/_build/html/index.html: just docs [--clean]
+docs *ARGS:
+    .venv/bin/python docs/build.py {{ARGS}}
+
 # outputs of every command against tests/frozen: just frozen [WORD...] [--update] [--keep FOLDER]
 frozen *ARGS:
     .venv/bin/python tests/frozen.py {{ARGS}}

@@ -1,0 +1,1 @@
+"""Parts of the documentation build: generated reference, run blocks, roles, formulas, checks."""
