@@ -15,7 +15,13 @@ _prepared = json.loads((HERE / "_build" / "prepared.json").read_text("utf-8"))
 project = "actuator-opt"
 author = "The actuator-opt authors"
 version = release = VERSION
-extensions = ["myst_parser", "extensions.runs", "extensions.roles", "extensions.mathml"]
+extensions = [
+    "myst_parser",
+    "extensions.runs",
+    "extensions.roles",
+    "extensions.mathml",
+    "extensions.validation",
+]
 source_suffix = {".md": "markdown"}
 exclude_patterns = ["README.md"]
 nitpicky = True

@@ -1,0 +1,116 @@
+"""The directive `validation`: tables of published values beside ours, computed by the build.
+
+``{validation} GROUP`` is a table of the cases of a group, ``{validation} claims`` and
+``{validation} agreements`` the statements and second programs, ``{validation} summary`` a sentence
+with all counts. A verdict that does not fit its reason is an error of the build.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from docutils import nodes
+from sphinx.util.docutils import SphinxDirective
+
+from .validation_cases import AGREEMENTS, CLAIMS, GROUPS, faults
+from .validation_rows import Case
+
+
+def number(value: float) -> str:
+    """Five significant digits, as an engineer writes them."""
+    text = f"{value:.5g}"
+    mantissa, e, power = text.partition("e")
+    return f"{mantissa} × 10^{int(power)}".replace("10^", "10<sup>") + "</sup>" if e else text
+
+
+def published(case: Case) -> str:
+    """The published number or range, with its unit."""
+    ends = case.published if isinstance(case.published, tuple) else (case.published,)
+    return f"{' to '.join(f'{end:.10g}' for end in ends)} {case.unit}".strip()
+
+
+def deviation(case: Case) -> str:
+    """The deviation in per cent, or as a factor where it is large."""
+    share = case.deviation()
+    if abs(share) < 1e-6:
+        return "0"
+    if abs(share) >= 2:
+        return f"factor {1 + share:.3g}"
+    return f"{share:+.2%}" if abs(share) >= 1e-4 else f"{share:+.4%}"
+
+
+def rows_of(group: str) -> list[list[str]]:
+    """Heading and rows of a table, in Markdown."""
+    if group == "claims":
+        head = ["statement", "source", "ours", "verdict", "test"]
+        return [
+            head,
+            *([c.subject, c.source, c.ours, _verdict(c.holds), _test(c.tests)] for c in CLAIMS),
+        ]
+    if group == "agreements":
+        head = ["what", "second program", "agreement", "test"]
+        return [head, *([a.subject, a.program, a.within, _test(a.tests)] for a in AGREEMENTS)]
+    rows = [["quantity", "published", "source", "computed", "deviation", "verdict", "test"]]
+    for case in GROUPS[group]():
+        words = f"{_verdict(case.reproduced())}{': ' if case.why else ''}{case.why}"
+        ours = f"{number(case.value())} {case.unit}".strip()
+        rows.append(
+            [
+                case.subject,
+                published(case),
+                case.source,
+                ours,
+                deviation(case),
+                words,
+                _test(case.tests),
+            ]
+        )
+    return rows
+
+
+def _verdict(holds: bool) -> str:
+    return "reproduced" if holds else "**contradicted**"
+
+
+def _test(name: str) -> str:
+    return f"{{test}}`{name}`"
+
+
+def summary() -> str:
+    """Counts of all cases and statements."""
+    cases = [case for group in GROUPS.values() for case in group()]
+    good, held = sum(case.reproduced() for case in cases), sum(claim.holds for claim in CLAIMS)
+    return (
+        f"{len(cases)} numbers: {good} are reproduced, {len(cases) - good} are contradicted, each "
+        f"with its reason. {len(CLAIMS)} statements without a number: {held} are confirmed, "
+        f"{len(CLAIMS) - held} are not. {len(AGREEMENTS)} second programs agree."
+    )
+
+
+class Validation(SphinxDirective):
+    """A table, or the sentence with all counts."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """The parsed table."""
+        self.env.note_reread()  # it depends on the package, not on the page
+        group = self.arguments[0]
+        if group == "summary":
+            wrong = faults()
+            if wrong:
+                raise self.error("\n".join(wrong))
+            return self.parse_text_to_nodes(summary())
+        if group not in {*GROUPS, "claims", "agreements"}:
+            raise self.error(f"no group {group!r}; there are {', '.join(GROUPS)}")
+        head, *rows = rows_of(group)
+        lines = [head, ["---"] * len(head), *rows]
+        box = nodes.container(classes=["validation"])
+        box += self.parse_text_to_nodes("\n".join(f"| {' | '.join(row)} |" for row in lines))
+        return [box]
+
+
+def setup(app: Any) -> dict[str, bool]:
+    """Register the directive."""
+    app.add_directive("validation", Validation)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
