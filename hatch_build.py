@@ -1,4 +1,7 @@
-"""Build the machine for recorded models (C) if there is a compiler; without it, NumPy is used."""
+"""Build the machine for recorded models (C) if there is a compiler; without it, NumPy is used.
+
+Packed documentation, if it was built (`docs/build.py`), goes into the wheel; it is not needed.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 FOLDER = "actuator_opt/base/symbolic"
+DOCUMENTATION = "docs/_build/docs.tar.xz"
 FLAGS = ["-O3", "-fno-math-errno", "-ffp-contract=off"]
 """Each operation is rounded as in NumPy (no fused products), so that results agree."""
 
@@ -21,6 +25,9 @@ class MachineHook(BuildHookInterface):
         """Compile, and name the file and the platform in the wheel."""
         if self.target_name != "wheel":
             return
+        pages = Path(self.root) / DOCUMENTATION
+        if version != "editable" and pages.is_file():
+            build_data["force_include"][str(pages)] = f"actuator_opt/_data/{pages.name}"
         self.folder = TemporaryDirectory()  # removed when the build ends
         try:
             built = self._compiled()

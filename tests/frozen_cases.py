@@ -327,6 +327,7 @@ def _others() -> Iterator[Case]:
     )
     yield Case("schema/design", (step("schema", looks=0),))
     yield Case("schema/scenario", (step("schema --scenario", looks=0),))
+    yield Case("docs/faults", (step("docs", "", looks=1), step("docs", "a\tb", looks=1)))
     yield Case("doctor/names", (step("doctor --out out", looks=0),))
     yield Case(
         "init/plain",

@@ -305,7 +305,7 @@ def _path(word: str, metrics: Mapping[str, Quantity] | None) -> Entry | None:
 def unknown(word: str) -> UsageError:
     """The error for an unknown word, with the nearest names by letters and meaning."""
     known = {entry.name: f"{entry.phrase} {' '.join(entry.aliases)}" for entry in all_entries()}
-    near = _nearest(ranked(word, known, LEAST))
+    near = nearest_names(ranked(word, known, LEAST))
     advice = f"nearest: {', '.join(near)}" if near else "see: actuator-opt list metrics"
     return UsageError(Diagnostic(f'"{shown(word)}" is no name known here', advice))
 
@@ -353,7 +353,7 @@ def catalogue(
     return Catalogue(kind, tuple(entries), design is not None)
 
 
-def _nearest(found: Sequence[tuple[float, str, bool]]) -> list[str]:
+def nearest_names(found: Sequence[tuple[float, str, bool]]) -> list[str]:
     """Names of at most `NEAREST` entries that are hardly less near than the first."""
     return [name for score, name, _ in found if score >= ALMOST * found[0][0]][:NEAREST]
 
@@ -372,7 +372,7 @@ def _near(word: str, entries: Sequence[Entry], kind: str) -> list[Entry]:
         or scores.get(entry.name, 0.0) >= MATCH
     ]
     if not kept:
-        near = ", ".join(_nearest(found))
+        near = ", ".join(nearest_names(found))
         advice = f"nearest: {near}" if near else f"see: actuator-opt list {kind}"
         raise UsageError(Diagnostic(f'no {kind} match "{shown(word)}"', advice))
     return kept

@@ -46,6 +46,7 @@ COMMANDS = {
     "schema": "design",
     "explain": "reference",
     "list": "reference.list_names",
+    "docs": "docs",
     "doctor": "runs",
     "materials": "materials",
     "runs": "runs",

@@ -14,6 +14,7 @@ import typer
 
 from ..base.errors import Diagnostic, UsageError
 from . import streams
+from .browser import graphical_browser
 from .job import Job
 from .options import REPORTS, DesignFile, Json, Out, PluginFile, Quiet, Seed, Set, Unset
 
@@ -85,14 +86,7 @@ def _browser(address: str, quiet: bool) -> Iterator[None]:
     The browser gets the name of a private file that leads to the address: other users can read
     command lines, and the address contains the key of the page.
     """
-    import webbrowser
-
-    try:
-        browser = webbrowser.get() if address else None
-    except webbrowser.Error:
-        browser = None
-    if type(browser) is webbrowser.GenericBrowser:  # a text browser would take the terminal
-        browser = None
+    browser = graphical_browser() if address else None
     if browser is None:
         if address and not quiet:
             streams.err("No browser found: open the address above.")

@@ -13,6 +13,7 @@ import hashlib
 import io
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -28,7 +29,8 @@ ROOT = Path(__file__).resolve().parents[2]
 COLUMNS = 80
 SECONDS = 120
 """Longest time of one command."""
-FLAGS, VALUES = {"hide-output", "hide-code"}, {"exit", "lines", "figure", "alt", "write"}
+FLAGS = {"hide-output", "hide-code"}
+VALUES = {"exit", "lines", "figure", "alt", "write", "without"}
 KINDS = {"console", "python", "json", "text"}
 
 
@@ -166,8 +168,8 @@ def _commands(text: str) -> list[str]:
     return commands
 
 
-def _json(block: Block, scratch: Path) -> Output:
-    """Outline of the object that a command prints."""
+def _json(block: Block, scratch: Path, known: dict[str, set[str]]) -> Output:
+    """Outline of the object that a command prints, without keys of earlier commands if named."""
     command = block.text.strip().removeprefix("$ ")
     done = subprocess.run(
         ["bash", "-c", command],
@@ -182,7 +184,11 @@ def _json(block: Block, scratch: Path) -> Output:
     expected = int(block.options.get("exit", "0"))
     if done.returncode != expected:
         raise RunFault(f"$ {command}\n{done.stderr}exit code {done.returncode}")
-    return Output(json.dumps(outline(json.loads(done.stdout))), commands=[(command, "")])
+    rows = outline(json.loads(done.stdout))
+    known[command.split()[1]] = {path for path, _, _ in rows}
+    left_out = known[block.options["without"]] if "without" in block.options else set()
+    rows = [row for row in rows if row[0] not in left_out]
+    return Output(json.dumps(rows), commands=[(command, "")])
 
 
 def outline(value: Any, path: str = "") -> list[tuple[str, str, str]]:
@@ -212,16 +218,32 @@ def _word(value: Any) -> str:
     return {str: "text", list: "list", dict: "object"}[type(value)]
 
 
+_TABLE = 6
+"""Number of entries of one type from which an object counts as a table with free names."""
+
+
+def _is_table(value: dict[str, Any]) -> bool:
+    """Whether the keys of an object are names of things, so that one row describes all."""
+    if any(not re.fullmatch(r"[a-z][a-z0-9_]*", name) for name in value):
+        return True
+    shapes = [frozenset(x) if isinstance(x, dict) else _word(x) for x in value.values()]
+    if any(isinstance(shape, frozenset) for shape in shapes):
+        first, *others = shapes
+        return bool(others) and all(
+            isinstance(shape, frozenset) and isinstance(first, frozenset) and shape & first
+            for shape in others
+        )
+    return len(value) >= _TABLE and len(set(shapes) - {"null"}) == 1
+
+
 def _walk(value: Any, path: str, merged: dict[str, list[Any]]) -> None:
     if isinstance(value, dict) and value:
-        keys = [set(x) if isinstance(x, dict) else None for x in value.values()]
-        alike = len(value) > 2 and keys[0] and all(k is not None and k & keys[0] for k in keys)
-        for name, below in value.items():
-            name = "NAME" if alike else name
-            _walk(below, f"{path}.{name}" if path else name, merged)
+        name = "NAME" if _is_table(value) else ""
+        for key, below in value.items():
+            _walk(below, f"{path}.{name or key}" if path else name or key, merged)
     elif isinstance(value, list) and value:
         for below in value:
-            if isinstance(below, (dict, list)):
+            if isinstance(below, dict):
                 _walk(below, f"{path}[]", merged)
             else:
                 merged.setdefault(f"{path}[]", []).append(below)
@@ -249,10 +271,11 @@ def _page(name: str, items: list[Block], folder: str) -> str:
         os.chdir(scratch)
         os.environ.update(_environment(scratch))
         names: dict[str, Any] = {"__name__": "__main__"}
+        known: dict[str, set[str]] = {}
         outputs = []
         for k, block in enumerate(items):
             try:
-                output = _run(block, scratch, names)
+                output = _run(block, scratch, names, known)
                 if wanted := block.options.get("figure"):
                     image = scratch / wanted
                     if not image.is_file():
@@ -268,7 +291,7 @@ def _page(name: str, items: list[Block], folder: str) -> str:
     return ""
 
 
-def _run(block: Block, scratch: Path, names: dict[str, Any]) -> Output:
+def _run(block: Block, scratch: Path, names: dict[str, Any], known: dict[str, set[str]]) -> Output:
     if wanted := block.options.get("write"):
         path = scratch / wanted
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -277,7 +300,7 @@ def _run(block: Block, scratch: Path, names: dict[str, Any]) -> Output:
     if block.kind == "console":
         return _console(block, scratch)
     if block.kind == "json":
-        return _json(block, scratch)
+        return _json(block, scratch, known)
     return _python(block, scratch, names)
 
 
