@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from math import atan2, degrees, exp, hypot, pi
 from pathlib import Path
@@ -314,15 +314,23 @@ def _simulation(name: str) -> Any:
     return ao.simulate(ao.read_scenario(ROOT / "designs" / "scenarios" / f"{name}.yaml"))
 
 
+def _named(rows: Iterable[Any]) -> Iterator[tuple[str, Any]]:
+    """Rows with a subject of their own: "same" stands for that of the row before."""
+    subject = ""
+    for row in rows:
+        subject = f"{subject}{row.subject[4:]}" if row.subject[:4] == "same" else row.subject
+        yield subject, row
+
+
 def foreign() -> Iterator[Case]:
     """Numbers of foreign simulations."""
     from actuator_opt.replicas import exudyn, fossee
 
     cases = "tests/replicas/test_published_cases.py::"
     source = "{source}`Exudyn2022`"
-    for row in exudyn.end_values(_simulation("exudyn_arm")):
+    for subject, row in _named(exudyn.end_values(_simulation("exudyn_arm"))):
         yield Case(
-            f"arm of EXUDYN at 0.4 s: {row.subject}", f"{source}, {row.place}", row.published,
+            f"arm of EXUDYN at 0.4 s: {subject}", f"{source}, {row.place}", row.published,
             row.ours, f"{cases}test_the_end_is_that_of_exudyn_but_for_its_steps", row.unit,
         )  # fmt: skip
     for name, words in (("exudyn_arm", "arm"), ("exudyn_press", "press")):
@@ -334,10 +342,9 @@ def foreign() -> Iterator[Case]:
                 f"{source}, steps of 10 µs", 1.0, 1 - share,
                 f"{cases}test_the_{words}_is_that_of_exudyn",
             )  # fmt: skip
-    servo = _simulation("textbook_servo")
-    for row in fossee.values(servo):
+    for subject, row in _named(fossee.values(_simulation("textbook_servo"))):
         yield Case(
-            f"textbook servo: {row.subject}", f"{{source}}`FOSSEE788` example {row.place}",
+            f"textbook servo: {subject}", f"{{source}}`FOSSEE788` example {row.place}",
             row.published, row.ours, f"{cases}test_the_servo_is_that_of_the_textbook", row.unit,
             0.01,
         )  # fmt: skip
