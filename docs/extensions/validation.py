@@ -39,41 +39,32 @@ def deviation(case: Case) -> str:
     return f"{share:+.2%}" if abs(share) >= 1e-4 else f"{share:+.4%}"
 
 
-def rows_of(group: str) -> list[list[str]]:
-    """Heading and rows of a table, in Markdown."""
+def rows_of(group: str) -> tuple[list[int], list[list[str]], list[str]]:
+    """Widths of the columns, heading and rows of a table in Markdown, and its tests in order."""
+    found: dict[str, int] = {}
+
+    def mark(name: str) -> str:
+        return str(found.setdefault(name, len(found) + 1))
+
     if group == "claims":
-        head = ["statement", "source", "ours", "verdict", "test"]
-        return [
-            head,
-            *([c.subject, c.source, c.ours, _verdict(c.holds), _test(c.tests)] for c in CLAIMS),
-        ]
-    if group == "agreements":
-        head = ["what", "second program", "agreement", "test"]
-        return [head, *([a.subject, a.program, a.within, _test(a.tests)] for a in AGREEMENTS)]
-    rows = [["quantity", "published", "source", "computed", "deviation", "verdict", "test"]]
-    for case in GROUPS[group]():
-        words = f"{_verdict(case.reproduced())}{': ' if case.why else ''}{case.why}"
-        ours = f"{number(case.value())} {case.unit}".strip()
-        rows.append(
-            [
-                case.subject,
-                published(case),
-                case.source,
-                ours,
-                deviation(case),
-                words,
-                _test(case.tests),
-            ]
-        )
-    return rows
+        widths, rows = [36, 16, 28, 16, 4], [["statement", "source", "ours", "verdict", "test"]]
+        rows += [[c.subject, c.source, c.ours, _verdict(c.holds), mark(c.tests)] for c in CLAIMS]
+    elif group == "agreements":
+        widths, rows = [36, 36, 24, 4], [["what", "second program", "agreement", "test"]]
+        rows += [[a.subject, a.program, a.within, mark(a.tests)] for a in AGREEMENTS]
+    else:
+        widths = [27, 13, 18, 13, 10, 20, 5]
+        rows = [["quantity", "published", "source", "computed", "deviation", "verdict", "test"]]
+        for case in GROUPS[group]():
+            words = f"{_verdict(case.reproduced())}{': ' if case.why else ''}{case.why}"
+            ours = f"{number(case.value())} {case.unit}".strip()
+            row = [case.subject, published(case), case.source, ours, deviation(case), words]
+            rows.append([*row, mark(case.tests)])
+    return widths, rows, list(found)
 
 
 def _verdict(holds: bool) -> str:
     return "reproduced" if holds else "**contradicted**"
-
-
-def _test(name: str) -> str:
-    return f"{{test}}`{name}`"
 
 
 def summary() -> str:
@@ -103,11 +94,14 @@ class Validation(SphinxDirective):
             return self.parse_text_to_nodes(summary())
         if group not in {*GROUPS, "claims", "agreements"}:
             raise self.error(f"no group {group!r}; there are {', '.join(GROUPS)}")
-        head, *rows = rows_of(group)
+        widths, (head, *rows), tests = rows_of(group)
         lines = [head, ["---"] * len(head), *rows]
-        box = nodes.container(classes=["validation"])
-        box += self.parse_text_to_nodes("\n".join(f"| {' | '.join(row)} |" for row in lines))
-        return [box]
+        text = [
+            "```{table}", f":widths: {' '.join(map(str, widths))}", ":class: validation", "",
+            *(f"| {' | '.join(row)} |" for row in lines), "```", "", "Tests:", "",
+            *(f"{k}. {{test}}`{name}`" for k, name in enumerate(tests, 1)),
+        ]  # fmt: skip
+        return self.parse_text_to_nodes("\n".join(text))
 
 
 def setup(app: Any) -> dict[str, bool]:
