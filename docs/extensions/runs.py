@@ -403,6 +403,15 @@ def setup(app: Any) -> dict[str, bool]:
             node["highlight_args"] = {}
             return node
 
+        def screen(self, output: Output, block: Block) -> nodes.Node:
+            """Commands, each with its output, as on a terminal."""
+            lines, parts = int(block.options.get("lines", "0")), []
+            for command, text in output.commands:
+                hidden = "hide-output" in block.options or block.kind == "json"
+                parts.append(nodes.inline("", f"$ {command}\n", classes=["command"]))
+                parts.append(nodes.Text("" if hidden else shortened(text, lines)))
+            return nodes.literal_block("", "", *parts, classes=["run-console"])
+
         def shown(self, block: Block, output: Output, folder: Path) -> Iterator[nodes.Node]:
             written, shorten = block.options.get("write"), int(block.options.get("lines", "0"))
             hidden = "hide-output" in block.options
@@ -411,14 +420,10 @@ def setup(app: Any) -> dict[str, bool]:
                 caption = nodes.paragraph("", "", nodes.literal("", written), classes=["run-file"])
                 yield caption
                 yield self.code(block.text, language)
-            elif block.kind == "json":
-                yield self.code(f"$ {output.commands[0][0]}", "console")
-                yield outline_table(json.loads(output.text))
-            elif block.kind == "console":
-                parts = []
-                for command, text in output.commands:
-                    parts.append(f"$ {command}\n" + ("" if hidden else shortened(text, shorten)))
-                yield self.code("".join(parts), "console", "run-console")
+            elif block.kind in ("console", "json"):
+                yield self.screen(output, block)
+                if block.kind == "json":
+                    yield outline_table(json.loads(output.text))
             else:
                 if "hide-code" not in block.options:
                     yield self.code(block.text, "python", "run-python")
