@@ -26,7 +26,7 @@ def number(value: float) -> str:
 def published(case: Case) -> str:
     """The published number or range, with its unit."""
     ends = case.published if isinstance(case.published, tuple) else (case.published,)
-    return f"{' to '.join(f'{end:.10g}' for end in ends)} {case.unit}".strip()
+    return f"{' to '.join(f'{end:.7g}' for end in ends)} {case.unit}".strip()
 
 
 def deviation(case: Case) -> str:
@@ -36,31 +36,31 @@ def deviation(case: Case) -> str:
         return "0"
     if abs(share) >= 2:
         return f"factor {1 + share:.3g}"
-    return f"{share:+.2%}" if abs(share) >= 1e-4 else f"{share:+.4%}"
+    text = f"{100 * share:+.2f} %" if abs(share) >= 1e-4 else f"{100 * share:+.4f} %"
+    return text.replace("-", "−")
 
 
-def rows_of(group: str) -> tuple[list[int], list[list[str]], list[str]]:
-    """Widths of the columns, heading and rows of a table in Markdown, and its tests in order."""
+def rows_of(group: str) -> tuple[list[list[str]], list[str]]:
+    """Heading and rows of a table in Markdown, and its tests in order."""
     found: dict[str, int] = {}
 
     def mark(name: str) -> str:
         return str(found.setdefault(name, len(found) + 1))
 
     if group == "claims":
-        widths, rows = [36, 16, 28, 16, 4], [["statement", "source", "ours", "verdict", "test"]]
+        rows = [["statement", "source", "ours", "verdict", "test"]]
         rows += [[c.subject, c.source, c.ours, _verdict(c.holds), mark(c.tests)] for c in CLAIMS]
     elif group == "agreements":
-        widths, rows = [36, 36, 24, 4], [["what", "second program", "agreement", "test"]]
+        rows = [["what", "second program", "agreement", "test"]]
         rows += [[a.subject, a.program, a.within, mark(a.tests)] for a in AGREEMENTS]
     else:
-        widths = [27, 13, 18, 13, 10, 20, 5]
         rows = [["quantity", "published", "source", "computed", "deviation", "verdict", "test"]]
         for case in GROUPS[group]():
             words = f"{_verdict(case.reproduced())}{': ' if case.why else ''}{case.why}"
             ours = f"{number(case.value())} {case.unit}".strip()
             row = [case.subject, published(case), case.source, ours, deviation(case), words]
             rows.append([*row, mark(case.tests)])
-    return widths, rows, list(found)
+    return rows, list(found)
 
 
 def _verdict(holds: bool) -> str:
@@ -94,10 +94,10 @@ class Validation(SphinxDirective):
             return self.parse_text_to_nodes(summary())
         if group not in {*GROUPS, "claims", "agreements"}:
             raise self.error(f"no group {group!r}; there are {', '.join(GROUPS)}")
-        widths, (head, *rows), tests = rows_of(group)
+        (head, *rows), tests = rows_of(group)
         lines = [head, ["---"] * len(head), *rows]
         text = [
-            "```{table}", f":widths: {' '.join(map(str, widths))}", ":class: validation", "",
+            "```{table}", ":class: wide-first", "",
             *(f"| {' | '.join(row)} |" for row in lines), "```", "", "Tests:", "",
             *(f"{k}. {{test}}`{name}`" for k, name in enumerate(tests, 1)),
         ]  # fmt: skip
