@@ -21,6 +21,7 @@ extensions = [
     "extensions.roles",
     "extensions.mathml",
     "extensions.validation",
+    "extensions.navigation",
 ]
 source_suffix = {".md": "markdown"}
 exclude_patterns = ["README.md"]
@@ -47,6 +48,7 @@ html_show_copyright = False
 html_show_sphinx = False
 html_theme_options = {"top_of_page_buttons": []}
 html_use_index = False
+html_show_search_summary = False  # a browser may not read other files of a folder
 html_domain_indices = False
 html_permalinks_icon = "#"
 toc_object_entries = False
