@@ -177,6 +177,11 @@ def html(folder: Path) -> list[str]:
         for address in page.loaded:
             if urlsplit(address).netloc or STYLE.search(address):
                 faults.append(f"{name}: loads {address} from outside")
+            elif (
+                not address.startswith(("#", "data:"))
+                and not ((folder / name).parent / _path(address)).is_file()
+            ):
+                faults.append(f"{name}: no file {address}")
         for address in page.links:
             fault, target = _resolved(name, address, pages, folder)
             faults += [f"{name}: {fault}"] if fault else []
@@ -191,6 +196,20 @@ def html(folder: Path) -> list[str]:
             waiting.append(target)
     lost = set(pages) - reached - {"search.html", "genindex.html", "404.html"}
     return [*faults, *(f"{name}: no link from the index leads here" for name in sorted(lost))]
+
+
+def _path(address: str) -> str:
+    return unquote(urlsplit(address).path)
+
+
+def unused_images(folder: Path) -> list[Path]:
+    """Images of earlier builds that no page shows."""
+    shown = {
+        ((folder / name).parent / _path(address)).resolve()
+        for name, page in _pages(folder).items()
+        for address in page.loaded
+    }
+    return [path for path in (folder / "_images").glob("*") if path.resolve() not in shown]
 
 
 def _resolved(name: str, address: str, pages: Mapping[str, Page], folder: Path) -> tuple[str, str]:
@@ -218,7 +237,8 @@ def topics(folder: Path, book: Book) -> dict[str, list[dict[str, str]]]:
     def add(word: str, page: str, anchor: str, title: str) -> None:
         places = found.setdefault(fold(word), [])
         address = f"{page}#{anchor}" if anchor else page
-        if all(place["address"] != address for place in places):
+        known = [place["address"] for place in places]
+        if address not in known and (anchor or all(a.partition("#")[0] != page for a in known)):
             places.append({"address": address, "title": title})
 
     def add_entry(word: str, label: str, title: str) -> None:
@@ -229,10 +249,12 @@ def topics(folder: Path, book: Book) -> dict[str, list[dict[str, str]]]:
     for kind, name, label in names:
         if kind != "scenario":
             add_entry(name, label, f"{kind} {name}")
-    for name, page in pages.items():
+    for name, page in sorted(pages.items(), key=lambda pair: pair[0].startswith("reference/")):
         if page.headings and name not in ("search.html", "genindex.html"):
             title = page.headings[0][1]
-            for word in (title, name.removesuffix(".html"), Path(name).stem):
+            if name.startswith("reference/"):
+                title += f" ({name.rpartition('/')[0]})"
+            for word in (page.headings[0][1], name.removesuffix(".html"), Path(name).stem):
                 add(word, name, "", title)
             if not name.startswith("reference/"):
                 for anchor, words in page.headings[1:]:
