@@ -20,6 +20,7 @@ extensions = [
     "extensions.runs",
     "extensions.roles",
     "extensions.mathml",
+    "extensions.validation",
     "extensions.navigation",
 ]
 source_suffix = {".md": "markdown"}
