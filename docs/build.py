@@ -35,25 +35,12 @@ os.environ["PYTHONPATH"] = str(ROOT)
 os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")
 
 
-def generated() -> Book:
-    """Pages of the reference; raises `Incomplete` for an entry without definition or source."""
-    from extensions import commands, entries, glossary, models, python_api
-    from extensions.book import Book
-
-    book = Book()
-    parts = (commands, entries, models, python_api, glossary)
-    for part in parts:
-        part.register(book)
-    for part in parts:
-        part.write(book)
-    return book.checked()
-
-
 def prepared() -> Book:
     """Write the sources of Sphinx; returns the book of generated pages."""
     from extensions import checks, runs
+    from extensions.reference import reference_book
 
-    book = generated()
+    book = reference_book()
     files = checks.written()
     texts = {name: checks.content(path) for name, path in files.items()}
     texts |= {f"{name}.md": text.encode() for name, text in book.pages.items()}

@@ -15,7 +15,13 @@ _prepared = json.loads((HERE / "_build" / "prepared.json").read_text("utf-8"))
 project = "actuator-opt"
 author = "The actuator-opt authors"
 version = release = VERSION
-extensions = ["myst_parser", "extensions.runs", "extensions.roles", "extensions.mathml"]
+extensions = [
+    "myst_parser",
+    "extensions.runs",
+    "extensions.roles",
+    "extensions.mathml",
+    "extensions.navigation",
+]
 source_suffix = {".md": "markdown"}
 exclude_patterns = ["README.md"]
 nitpicky = True
@@ -41,6 +47,7 @@ html_show_copyright = False
 html_show_sphinx = False
 html_theme_options = {"top_of_page_buttons": []}
 html_use_index = False
+html_show_search_summary = False  # a browser may not read other files of a folder
 html_domain_indices = False
 html_permalinks_icon = "#"
 toc_object_entries = False

@@ -299,7 +299,7 @@ def _of_path(entry: Entry, actuator: Actuator | None) -> Explanation:
             definition = key.kind.help or entry.phrase
         choices = key.choices
         if not key.required and key.default is not None and not isinstance(key.default, tuple):
-            definition += f"; default: {_shown(key.quantity(), key.default)}"
+            definition += f"; default: {value_text(key.quantity(), key.default)}"
         sample = choices[0] if choices else (key.kind.example if key.kind is not None else "")
         block = generic.rpartition(".")[0]
         siblings = [path for path in templates() if path.rpartition(".")[0] == block]
@@ -310,7 +310,7 @@ def _of_path(entry: Entry, actuator: Actuator | None) -> Explanation:
     else:
         sample = "" if entry.quantity is None else _sample_limit(entry, actuator)
         related = [entry.name.rpartition(".")[0].partition(".")[2]]
-    validity = "" if entry.quantity is None else _range(entry.quantity)
+    validity = "" if entry.quantity is None else range_of(entry.quantity)
     path = entry.name.replace("[*]", "[0]")
     now, value = "", None
     moves: Mapping[str, float] = {}
@@ -352,7 +352,7 @@ def _unit_or_one(quantity: Quantity) -> float:
     return unit(quantity.unit, quantity.dimension).to_si(1.0) if quantity.unit else 1.0
 
 
-def _range(quantity: Quantity) -> str:
+def range_of(quantity: Quantity) -> str:
     """Valid range of a quantity in words; "" if it has none."""
     if quantity.lower == -INFINITY and quantity.upper == INFINITY:
         return ""
@@ -361,7 +361,7 @@ def _range(quantity: Quantity) -> str:
     return quantity.range_text()
 
 
-def _shown(quantity: Quantity | None, value: object) -> str:
+def value_text(quantity: Quantity | None, value: object) -> str:
     """A default value in words."""
     from ..design.structure import number_of
 
@@ -409,7 +409,7 @@ def _in_design(
     if "[*]" in entry.name:
         pattern = entry.name
         stated = [
-            f"{spell(loc, design)} {_shown(key.quantity(value), value)}"
+            f"{spell(loc, design)} {value_text(key.quantity(value), value)}"
             for loc, key, value in leaves(design)
             if re.sub(r"\[\d+\]", "[*]", spell(loc)) == pattern
         ]
@@ -424,7 +424,7 @@ def _in_design(
     if not isinstance(value, float) and path not in known:
         return word_of(value), word_of(value), {}
     number = known.get(path, value)
-    text = _shown(entry.quantity, number)
+    text = value_text(entry.quantity, number)
     bounds = design.variables.get(path)
     if bounds is not None and entry.quantity is not None:
         low, high = (entry.quantity.text(x, 6) for x in (bounds.lower, bounds.upper))
@@ -545,7 +545,7 @@ def _of_property(entry: Entry, actuator: Actuator | None) -> Explanation:
     )
     return Explanation(
         entry, definition, (f'--set "materials.{first}.{entry.name}={text}"',), "library value",
-        "stated with each material: actuator-opt materials show NAME", _range(entry.quantity),
+        "stated with each material: actuator-opt materials show NAME", range_of(entry.quantity),
         ("confidence", "scatter", "knock-down"), now,
     )  # fmt: skip
 

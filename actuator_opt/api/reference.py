@@ -179,7 +179,7 @@ def _terms() -> Iterator[Entry]:
         yield Entry(term.name, "term", term.definition, aliases=term.aliases)
 
 
-def _key(path: str, key: KeyEntry) -> Entry:
+def key_entry(path: str, key: KeyEntry) -> Entry:
     """Entry of a value of the design file."""
     from ..design.kinds import MaterialName
 
@@ -193,7 +193,7 @@ def _key(path: str, key: KeyEntry) -> Entry:
 def _paths() -> Iterator[Entry]:
     from ..design.structure import templates
 
-    return (_key(path, key) for path, key in templates().items())
+    return (key_entry(path, key) for path, key in templates().items())
 
 
 def _blocks() -> Iterator[Entry]:
@@ -277,7 +277,7 @@ def _path(word: str, metrics: Mapping[str, Quantity] | None) -> Entry | None:
     if generic not in known and (dotted := ".".join(word.casefold().split())) in known:
         word = generic = dotted
     if generic in known:
-        return replace(_key(generic, known[generic]), name=word.strip())
+        return replace(key_entry(generic, known[generic]), name=word.strip())
     if generic in blocks():
         return next(entry for entry in _blocks() if entry.name == generic)
     ending = [path for path in known if path.endswith(f".{generic}")]
@@ -285,7 +285,7 @@ def _path(word: str, metrics: Mapping[str, Quantity] | None) -> Entry | None:
     least = min((path.count(".") for path in designed), default=0)
     nearest = [path for path in designed if path.count(".") == least]
     if len(nearest) == 1:
-        return _key(nearest[0], known[nearest[0]])
+        return key_entry(nearest[0], known[nearest[0]])
     head, _, rest = word.strip().partition(".")
     if head not in ("requirements", "materials") or not rest:
         return None
@@ -434,7 +434,7 @@ def _stated(design: Design, entries: Sequence[Entry]) -> list[Entry]:
         if len(loc) == 1:
             continue
         number = number_of(value)
-        entry = replace(_key(spell(loc, design), key), quantity=key.quantity(value))
+        entry = replace(key_entry(spell(loc, design), key), quantity=key.quantity(value))
         stated.append(replace(entry, value=word_of(value) if number is None else number))
         templates.add(re.sub(r"\[\d+\]", "[*]", spell(loc)))
     return [*stated, *(entry for entry in entries if entry.name not in templates)]

@@ -74,8 +74,12 @@ def content(path: Path) -> bytes:
 # --- words ---------------------------------------------------------------------------------------
 
 
-def prose(text: str) -> Iterator[tuple[int, str]]:
-    """Lines of a page outside code, with their number; code in backquotes is left out."""
+CODE = re.compile(r"(\{\w+\}`[^`]*`)|``[^`]*``|`[^`]*`|\$[^$]*\$|\]\([^)]*\)")
+"""Roles (first group), code, formulas and addresses in a line."""
+
+
+def prose(text: str, *, roles: bool = False) -> Iterator[tuple[int, str]]:
+    """Numbered lines of a page without code; `roles` keeps roles with their text."""
     fence = ""
     for number, line in enumerate(text.splitlines(), 1):
         marks = re.match(r"\s*(`{3,}|~{3,})(.*)", line)
@@ -86,7 +90,7 @@ def prose(text: str) -> Iterator[tuple[int, str]]:
             fence = ""
             continue
         if not fence:
-            yield number, re.sub(r"(\{\w+\})?`[^`]*`|\$[^$]*\$|\]\([^)]*\)", "", line)
+            yield number, CODE.sub(r"\1" if roles else "", line)
 
 
 @cache

@@ -8,8 +8,10 @@ from collections.abc import Iterable
 from actuator_opt.api import explaining, reference
 from actuator_opt.api.explaining import Explanation
 from actuator_opt.api.reference import NO_UNIT, Entry
+from actuator_opt.design.build import TABLE_KEYS
 from actuator_opt.design.materials import load_library
-from actuator_opt.design.structure import templates
+from actuator_opt.design.scenario.model import Scenario
+from actuator_opt.design.structure import KeyEntry, entries as keys_of, templates
 
 from .book import Book
 from .markdown import escaped, fence, page, phrase, table
@@ -45,6 +47,7 @@ INTRO = {
     "friction law": "The friction law of a seal: `seals.piston.friction` and `seals.rod.friction`.",
     "material property": "What a material of the library or of a design file states.",
 }
+SCENARIO = "reference/scenario-keys"
 GROUPS = {
     "metal": "Metals",
     "ply": "Plies",
@@ -77,6 +80,8 @@ def register(book: Book) -> None:
     for entry in reference.all_entries():
         if entry.kind != "term":
             book.register(ROLES[entry.kind], entry.name, _place(entry), *entry.aliases)
+    for name in keys_of(Scenario):
+        book.register("scenario", name, SCENARIO)
 
 
 def write(book: Book) -> None:
@@ -89,6 +94,7 @@ def write(book: Book) -> None:
             f"# {title}", intro, _overview(entries), *(_section(entry, book) for entry in entries)
         )
     _write_keys(book, [*found["block"], *found["PATH"]])
+    _write_scenario_keys(book)
     _write_materials(book)
 
 
@@ -98,7 +104,7 @@ def _overview(entries: Iterable[Entry]) -> str:
     return table(("name", "unit", "meaning"), rows)
 
 
-def _linked(name: str, book: Book) -> str:
+def linked(name: str, book: Book) -> str:
     """A name to look up next, as a link if it is an entry."""
     number = name.removeprefix("check ")
     if number != name:
@@ -106,7 +112,7 @@ def _linked(name: str, book: Book) -> str:
     for kind, names in book.labels.items():
         if name in names and kind in ROLES.values():
             return f"{{{kind}}}`{name}`"
-    return f"`{name}`"
+    return f"{{term}}`{name}`" if name in book.labels["term"] else f"`{name}`"
 
 
 def _facts(explanation: Explanation, book: Book) -> list[tuple[str, str]]:
@@ -125,7 +131,7 @@ def _facts(explanation: Explanation, book: Book) -> list[tuple[str, str]]:
         "valid": phrase(explanation.validity),
         "model": ", ".join(models),
         "source": phrase(explanation.source, book.labels.get("source", ())),
-        "see also": ", ".join(_linked(name, book) for name in explanation.related),
+        "see also": ", ".join(linked(name, book) for name in explanation.related),
     }
     return [*facts, *((head, text) for head, text in more.items() if text)]
 
@@ -139,10 +145,11 @@ def _section(entry: Entry, book: Book, level: str = "##") -> str:
     if entry.kind not in ("PATH", "block"):
         parts["source"] = explanation.source.strip(" ;")
     book.require(entry.kind, entry.name, **parts)
+    title = f"{entry.name} {entry.phrase}" if entry.kind == "check" else entry.name
     lines = [f"- **{head}**: {text}" for head, text in _facts(explanation, book)]
     ask = fence("text", "\n".join(explanation.ask)) if explanation.ask else ""
     return page(
-        f"{book.at(ROLES[entry.kind], entry.name)}\n{level} {escaped(entry.name)}",
+        f"{book.at(ROLES[entry.kind], entry.name)}\n{level} {escaped(title)}",
         phrase(explanation.definition, book.labels.get("source", ())),
         "\n".join(lines),
         ask,
@@ -175,6 +182,48 @@ def _write_keys(book: Book, entries: list[Entry]) -> None:
         "list. In the terminal: `actuator-opt list paths`.",
         table(("block", "meaning"), tops),
         fence("{toctree}", ":hidden:\n\n" + "\n".join(w.rpartition("/")[2] for w in groups)),
+    )
+
+
+def _write_scenario_keys(book: Book) -> None:
+    """Keys of a scenario file: a table for each block, before them the keys without block."""
+    values, tops, parts, single = templates(Scenario), keys_of(Scenario), [], []
+    head = ("PATH", "unit", "default", "range or words", "meaning")
+    for name, top in tops.items():
+        inside = {p: k for p, k in values.items() if re.split("[.[]", p)[0] == name}
+        rows = [_scenario_row(p, k, book) for p, k in (inside or {name: top}).items()]
+        if inside:
+            title = f"{book.at('scenario', name)}\n## {escaped(name)}"
+            parts.append(page(title, phrase(top.meaning), table(head, rows)).rstrip())
+        else:
+            single += rows
+            parts.insert(0, book.at("scenario", name))
+    book.pages[SCENARIO] = page(
+        "# Scenario keys",
+        "A scenario is a test of a design over time ([scenarios](/how-to/scenarios.md)).",
+        *[part for part in parts if part.endswith(")=")],
+        "## Keys without a block",
+        table(head, single),
+        *[part for part in parts if not part.endswith(")=")],
+    )
+
+
+def _scenario_row(path: str, key: KeyEntry, book: Book) -> tuple[str, ...]:
+    """Row of a key: unit, default, range or words, meaning."""
+    entry = reference.key_entry(path, key)
+    meaning = key.meaning or TABLE_KEYS.get(path, "")
+    book.require("scenario key", path, definition=meaning)
+    default = "required" if key.required else ""
+    if not key.required and key.default not in (None, (), {}):
+        default = explaining.value_text(entry.quantity, key.default)
+    valid = "" if entry.quantity is None else explaining.range_of(entry.quantity)
+    words = ", ".join(f"`{word}`" for word in key.choices)
+    return (
+        f"`{path}`",
+        escaped(entry.unit),
+        phrase(default),
+        words or phrase(valid),
+        phrase(meaning),
     )
 
 

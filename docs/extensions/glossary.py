@@ -5,6 +5,7 @@ from __future__ import annotations
 from actuator_opt.api.glossary import terms
 
 from .book import Book
+from .entries import linked
 from .markdown import fence, page, phrase
 from .models import references
 
@@ -26,7 +27,7 @@ def write(book: Book) -> None:
         book.require("term", term.name, definition=term.definition, source=term.source)
         words = "\n".join([term.name, *term.aliases])
         source = phrase(term.source, references())
-        related = ", ".join(f"`{name}`" for name in term.related)
+        related = ", ".join(linked(name, book) for name in term.related)
         parts.append(f"{words}\n  {phrase(term.definition)} Source: {source}. See also: {related}.")
     book.pages["glossary"] = page(
         "# Glossary",

@@ -19,7 +19,7 @@ def phrase(text: str, sources: Iterable[str] = ()) -> str:
     r"""A line of a docstring or help text; words in backquotes are code, known sources are links.
 
     >>> phrase("p_s of `supply` [Hill1950]", ["Hill1950"])
-    'p\\\\_s of `supply` {source}`Hill1950`'
+    'p\\_s of `supply` {source}`Hill1950`'
     """
     known = set(sources)
     parts = _CODE.split(" ".join(text.split()))

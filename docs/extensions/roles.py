@@ -14,10 +14,11 @@ from sphinx import addnodes
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 from .models import described, function, test_exists
+from .names import known_label
 
 KINDS = (
     "source", "metric", "key", "model", "command", "material", "check", "joint", "seal", "law",
-    "property", "python",
+    "property", "python", "scenario",
 )  # fmt: skip
 
 
@@ -35,7 +36,7 @@ class Named(SphinxRole):
         literal: nodes.Element = nodes.literal("", words, classes=[self.kind])
         if self.kind == "source":
             literal = nodes.inline("", f"[{words}]" if not given else words, classes=["source"])
-        label = self.label(name.strip())
+        label = known_label(self.config.reference_labels, self.kind, name.strip())
         if label is None:
             if self.kind == "model" and self.elsewhere(name):
                 return [literal], []
@@ -48,15 +49,6 @@ class Named(SphinxRole):
             refwarn=True, refdoc=self.env.current_document.docname,
         )  # fmt: skip
         return [link], []
-
-    def label(self, name: str) -> str | None:
-        """Label of the entry of a name; None if it is unknown."""
-        known: dict[str, str] = self.config.reference_labels.get(self.kind, {})
-        if self.kind == "key" and name not in known:
-            name = re.sub(r"\[[^\[\]]*\]", "[*]", name)
-            if re.match(r"requirements\.|materials\.|variables|waivers", name):
-                name = name.partition(".")[0]
-        return known.get(name)
 
     @staticmethod
     def elsewhere(name: str) -> bool:

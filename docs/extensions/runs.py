@@ -203,7 +203,8 @@ def outline(value: Any, path: str = "") -> list[tuple[str, str, str]]:
     for name, values in merged.items():
         words = sorted({_word(x) for x in values}, key=lambda w: (w == "null", w))
         sample = next((x for x in values if x not in (None, [], {}, "")), values[0])
-        text = json.dumps(sample, ensure_ascii=False)
+        short = float(f"{sample:.6g}") if isinstance(sample, float) else sample
+        text = json.dumps(short, ensure_ascii=False)
         rows.append((name, " or ".join(words), text if len(text) <= 60 else text[:57] + "…"))
     return rows
 
@@ -219,7 +220,7 @@ def _word(value: Any) -> str:
 
 
 _TABLE = 6
-"""Number of entries of one type from which an object counts as a table with free names."""
+"""Number of numbers from which an object counts as a table with free names."""
 
 
 def _is_table(value: dict[str, Any]) -> bool:
@@ -233,12 +234,13 @@ def _is_table(value: dict[str, Any]) -> bool:
             isinstance(shape, frozenset) and isinstance(first, frozenset) and shape & first
             for shape in others
         )
-    return len(value) >= _TABLE and len(set(shapes) - {"null"}) == 1
+    return len(value) >= _TABLE and set(shapes) - {"null"} == {"number"}
 
 
 def _walk(value: Any, path: str, merged: dict[str, list[Any]]) -> None:
     if isinstance(value, dict) and value:
-        name = "NAME" if _is_table(value) else ""
+        table = path.rpartition(".")[2].startswith("by_") or _is_table(value)
+        name = "NAME" if table else ""
         for key, below in value.items():
             _walk(below, f"{path}.{name or key}" if path else name or key, merged)
     elif isinstance(value, list) and value:

@@ -50,6 +50,11 @@ def test_one_version():
     newest, date = re.search(r"^## (\S+) \((\S+)\)", changes, flags=re.MULTILINE).groups()
     assert [citation["version"], newest] == [VERSION, VERSION]
     assert str(citation["date-released"]) == date
+    project = PROJECT["project"]
+    assert citation["authors"] == project["authors"]
+    assert citation["license"] == project["license"]
+    assert citation["keywords"] == project["keywords"]
+    assert citation["abstract"].strip(".") == project["description"]
     assert "version" in PROJECT["project"]["dynamic"]
     assert PROJECT["tool"]["hatch"]["version"]["path"] == "actuator_opt/version.py"
 
@@ -84,6 +89,8 @@ def test_built_distributions(tmp_path):
         assert "actuator_opt/_data/materials/fluids.yaml" in wheel.namelist()
         assert "actuator_opt/py.typed" in wheel.namelist()
         packed = {name.partition("/")[2] for name in sources.getnames()}
+    assert "docs/build.py" in packed
+    assert not [name for name in packed if name.startswith("docs/_build")]
     replicas = (ROOT / "actuator_opt" / "replicas").rglob("*.*")
     names = {str(path.relative_to(ROOT)) for path in replicas if path.suffix in (".py", ".yaml")}
     assert names <= packed
@@ -117,6 +124,7 @@ def test_modules_and_functions_stay_short():
 
 def test_readme_has_two_complete_commands():
     """Two one-line commands, joined by &&, each written once and named nowhere before."""
+    assert len(README.encode()) <= 8000
     design, test = commands()
     for command, end in (
         (design, ".venv/bin/actuator-opt optimise designs/knee.yaml"),

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from docs_pages import docstrings
 from model_samples import public_functions
 
 from actuator_opt.metrics.documentation import describe, function_of
@@ -22,6 +23,7 @@ from actuator_opt.models import elastomer, seals
 ROOT = Path(__file__).parents[2]
 REFERENCES = yaml.safe_load((files("actuator_opt") / "references.yaml").read_text("utf-8"))
 FUNCTIONS = public_functions()
+sections, entries = docstrings.sections, docstrings.entries
 SECTIONS = ["Parameters", "Returns", "Notes", "References", "Examples"]
 UNITLESS = {
     "bool", "Ends", "PlyStrength", "Sequence[WallLayer]", "tuple[str, str]", "Sequence[TubeLayer]",
@@ -39,25 +41,6 @@ def keys(text):
     """Reference keys of a text: bracketed words that have an entry, or look as if they should."""
     words = set(re.findall(r"\[([A-Z][\w-]*)\]", text))
     return {word for word in words if word in REFERENCES or re.search(r"[A-Za-z-]\d{3,}", word)}
-
-
-def sections(function):
-    """Head and sections of a docstring, in the order they stand."""
-    parts = re.split(r"^(\w+)\n-{3,}\n", inspect.getdoc(function), flags=re.MULTILINE)
-    return {
-        "": parts[0].strip(),
-        **dict(zip(parts[1::2], map(str.strip, parts[2::2]), strict=True)),
-    }
-
-
-def entries(text):
-    """Description of every name of a Parameters section."""
-    found = {}
-    for names, description in re.findall(
-        r"^(\w[\w, ]*) : (.*(?:\n .*)*)", text, flags=re.MULTILINE
-    ):
-        found.update(dict.fromkeys(re.split(r",\s*", names), description))
-    return found
 
 
 def cited_text():
@@ -128,20 +111,10 @@ def test_metrics_find_their_source():
             assert 0 < len(model.valid) <= LONGEST_RANGE, metric
 
 
-def names_used(text):
-    """Model functions a test file names: ``module.function``, or imported from its module."""
-    used = set(re.findall(r"(?<![\w.])(\w+\.\w+)", text))
-    for module, several, one in re.findall(
-        r"from actuator_opt\.models\.(\w+) import (?:\(([^)]*)\)|(.*))", text
-    ):
-        used |= {f"{module}.{name}" for name in re.findall(r"\w+", several or one)}
-    return used
-
-
 def equation_table():
     """Rows of source, function, test files: the value tests that name the function."""
     tests = {
-        path.name: names_used(path.read_text("utf-8"))
+        path.name: docstrings.names_used(path.read_text("utf-8"))
         for path in sorted((ROOT / "tests").rglob("test_*.py"))
         if path.name not in WALKS
     }
