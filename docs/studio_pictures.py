@@ -8,6 +8,7 @@ Run it again when the page changes. Light mode, 1280 pixels wide, at most 120 kB
 from __future__ import annotations
 
 import io
+import re
 import subprocess
 import sys
 import tempfile
@@ -68,7 +69,13 @@ def settled(page: Page) -> None:
     page.locator('#main[aria-busy="false"]').wait_for(timeout=WAIT)
     page.locator('#objective:not([class="about"])').wait_for(timeout=WAIT)
     page.locator(".wish .price strong").first.wait_for(timeout=WAIT)
-    page.wait_for_timeout(6000)  # curves and the trade-off follow
+    page.wait_for_timeout(15_000)  # curves and the trade-off follow
+
+
+def top(page: Page) -> None:
+    """Scroll to the head of the page."""
+    page.evaluate("document.activeElement.blur(); scrollTo(0, 0)")
+    page.wait_for_timeout(300)
 
 
 def typed(page: Page, path: str, text: str) -> None:
@@ -92,22 +99,24 @@ def main() -> None:
         browser = playwright.chromium.launch(executable_path=CHROMIUM)
         start(folder, "leg", *DUTY, "--stiffness", "8 kN/mm")
         with opened(browser, folder, "leg.yaml") as page:
-            page.locator(f'.wish[data-path="{STIFFNESS}"] input[type=range]').focus()
-            settled(page)
-            kept("open", page)
+            page.locator("#across").select_option(label="stiffness")
+            page.locator("#trade-text", has_text=re.compile(r"\d")).wait_for(timeout=WAIT)
             kept("trade-off", page.locator("#tradeoff"))
+            top(page)
+            kept("open", page)
             page.locator("#pin").click()
             typed(page, STIFFNESS, "10 kN/mm")
             settled(page)
+            top(page)
             kept("moved", page)
             menus = page.locator("#choices")
             if menus.is_visible():
-                menus.locator("summary").click()
+                if menus.get_attribute("open") is None:
+                    menus.locator("summary").click()
                 menus.locator('[data-path="piston.material"] select').select_option("al_7075_t6")
                 settled(page)
                 kept("choices", menus)
             typed(page, PUSH, "90 kN")
-            page.locator("#card").wait_for(timeout=WAIT)
             page.locator("#card", has_text="change").wait_for(timeout=WAIT)
             kept("nothing", page.locator("#drawing"))
         (folder / "lift.csv").write_text(LIFT)
