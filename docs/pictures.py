@@ -18,9 +18,7 @@ MARGIN = 16
 """Pixels of white paper that stay around what is drawn."""
 
 
-def part(
-    source: str | Path, target: str | Path, top: float = 0.0, bottom: float = 1.0
-) -> Path:
+def part(source: str | Path, target: str | Path, top: float = 0.0, bottom: float = 1.0) -> Path:
     """Write the part of a picture between two heights, without the white paper around it.
 
     Parameters

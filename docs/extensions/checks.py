@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 BORROWED = {"contributing/extending.md": ROOT / "CONTRIBUTING.md"}
 """Pages whose text is a file outside docs/."""
 OFFERED = ROOT / "designs"
-"""Folder of files that pages offer for download, as `designs/NAME`; those that none names are left out."""
+"""Folder of files that pages offer for download, as `designs/NAME`."""
 
 OWN = {"_build", "_static", "extensions", "__pycache__"}
 """Folders of docs/ without pages."""
