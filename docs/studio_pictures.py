@@ -26,8 +26,17 @@ LIMIT = 120_000
 """Bytes of a picture, at most."""
 PUSH, STIFFNESS = "load_cases[push].force", "requirements.stiffness_min.min"
 DUTY = ["--push", "9 kN", "--pull", "5 kN", "--stroke", "180 mm", "--pressure", "160 bar"]
+
+
+def rise(u: float) -> float:
+    """From 0 to 1, smooth at both ends."""
+    u = min(max(u, 0.0), 1.0)
+    return u**3 * (10 - 15 * u + 6 * u**2)
+
+
 LIFT = "time [s],position [mm],force [N]\n" + "\n".join(
-    f"{0.05 * k:.2f},{20 + 0.5 * k * (80 - k) / 8:.3f},4905" for k in range(81)
+    f"{t:.3f},{15 + 150 * (rise((t - 0.2) / 1.2) - rise((t - 1.8) / 1.2)):.3f},4905"
+    for t in (0.025 * k for k in range(129))
 )
 WAIT = 180_000
 
@@ -91,6 +100,17 @@ def start(folder: Path, name: str, *options: str) -> None:
     subprocess.run(command, cwd=folder, check=True)
 
 
+def duty(browser: Browser, folder: Path) -> None:
+    """Write the picture of a duty cycle."""
+    (folder / "lift.csv").write_text(LIFT)
+    start(folder, "lift", "--cycle", "lift.csv", "--pressure", "160 bar")
+    with opened(browser, folder, "lift.yaml", 1400) as page:
+        if page.locator("#duty").is_visible():
+            page.locator("#least").click()
+            page.wait_for_timeout(2000)
+            kept("duty", page.locator("#duty"))
+
+
 def main() -> None:
     """Write all pictures."""
     FOLDER.mkdir(parents=True, exist_ok=True)
@@ -119,13 +139,7 @@ def main() -> None:
             typed(page, PUSH, "20 kN")
             page.locator("#card", has_text=re.compile("change|less")).wait_for(timeout=WAIT)
             kept("nothing", page.locator("#drawing"))
-        (folder / "lift.csv").write_text(LIFT)
-        start(folder, "lift", "--cycle", "lift.csv", "--pressure", "160 bar")
-        with opened(browser, folder, "lift.yaml", 1400) as page:
-            if page.locator("#duty").is_visible():
-                page.locator("#least").click()
-                page.wait_for_timeout(2000)
-                kept("duty", page.locator("#duty"))
+        duty(browser, folder)
         browser.close()
 
 
