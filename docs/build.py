@@ -77,7 +77,6 @@ def prepared() -> Book:
     for path in (SOURCE / "_figures").glob("*"):
         if path.name not in kept:
             shutil.rmtree(path)
-    shutil.rmtree(HTML / "_images", ignore_errors=True)  # Sphinx copies those of the pages
     data = {"labels": book.labels, "runs": {name: str(path) for name, path in folders.items()}}
     (BUILD / "prepared.json").write_text(json.dumps(data), encoding="utf-8")
     return book
@@ -118,6 +117,8 @@ def main() -> int:
                  "-d", str(BUILD / "doctrees"), str(SOURCE), str(HTML)]  # fmt: skip
     if code := build_main(arguments):
         return code
+    for path in checks.unused_images(HTML):
+        path.unlink()
     faults = checks.html(HTML)
     if faults:
         print("\n".join(faults), file=sys.stderr)

@@ -7,9 +7,10 @@ import json
 import shutil
 import tarfile
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from ..base import files as store
 from ..base.dataclass import dataclass
@@ -18,6 +19,8 @@ from ..base.words import fold, ranked
 from ..version import VERSION
 from .reference import LEAST, all_entries, checked_word, find, nearest_names
 
+Topics: TypeAlias = Mapping[str, Sequence[Mapping[str, str]]]
+"""Address and title of each place of a topic, the topic in the form of `fold`."""
 ARCHIVE = "docs.tar.xz"
 TOPICS = "topics.json"
 """File of the pages that lists the address and title of every topic."""
@@ -26,12 +29,13 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 
 @dataclass(frozen=True, slots=True)
 class DocumentationPage:
-    """A page of the documentation: its file, the place on it, and its title."""
+    """A page of the documentation: its file, the place on it, its title, and further places."""
 
     topic: str
     title: str
     file: Path
     anchor: str = ""
+    also: tuple[DocumentationPage, ...] = ()
 
     @property
     def address(self) -> str:
@@ -45,7 +49,12 @@ class DocumentationPage:
             "title": self.title,
             "file": str(self.file),
             "address": self.address,
+            "also": [{"title": page.title, "address": page.address} for page in self.also],
         }
+
+    def text(self) -> str:
+        """Title and address of each place, a line each."""
+        return "".join(f"{page.title}: {page.address}\n" for page in (self, *self.also))
 
 
 def archive(*, package: Path = _PACKAGE) -> Path | None:
@@ -121,26 +130,26 @@ def documentation(
     home = unpacked(packed, folder)
     if word is None:
         return DocumentationPage("", "Documentation", home / "index.html")
-    topics = json.loads((home / TOPICS).read_text("utf-8"))
+    topics: Topics = json.loads((home / TOPICS).read_text("utf-8"))
     name = _found(word, topics)
     if name is None:
         raise _unknown(word, topics)
-    file, _, anchor = topics[name]["address"].partition("#")
-    return DocumentationPage(name, topics[name]["title"], home / file, anchor)
+    places = []
+    for place in topics[name]:
+        file, _, anchor = place["address"].partition("#")
+        places.append(DocumentationPage(name, place["title"], home / file, anchor))
+    return replace(places[0], also=tuple(places[1:]))
 
 
-def _found(word: str, topics: Mapping[str, Mapping[str, str]]) -> str | None:
-    """The topic of a word: by its name, by its name in other letters, or as `explain` finds it."""
-    if word in topics:
-        return word
-    folded = {fold(name): name for name in reversed(list(topics))}
-    if fold(word) in folded:
-        return folded[fold(word)]
+def _found(word: str, topics: Topics) -> str | None:
+    """The topic of a word: by its name, or as `explain` finds it."""
+    if fold(word) in topics:
+        return fold(word)
     entry = find(word)
     if entry is None:
         return None
     generic = "".join("[*]" if k % 2 else part for k, part in enumerate(_bracketed(entry.name)))
-    return next((name for name in (entry.name, generic) if name in topics), None)
+    return next((name for name in map(fold, (entry.name, generic)) if name in topics), None)
 
 
 def _bracketed(name: str) -> list[str]:
@@ -148,10 +157,12 @@ def _bracketed(name: str) -> list[str]:
     return name.replace("]", "[").split("[")
 
 
-def _unknown(word: str, topics: Mapping[str, Mapping[str, str]]) -> UsageError:
+def _unknown(word: str, topics: Topics) -> UsageError:
     """The error for an unknown topic, with the nearest names and titles."""
     known = {entry.name: f"{entry.phrase} {' '.join(entry.aliases)}" for entry in all_entries()}
-    known |= {name: entry["title"] for name, entry in topics.items() if "/" not in name}
+    for place in (place for places in topics.values() for place in places):
+        if not place["address"].startswith("reference/"):
+            known.setdefault(place["title"], "")
     near = nearest_names(ranked(word, known, LEAST))
     advice = f"nearest: {', '.join(near)}" if near else "see: actuator-opt docs"
     return UsageError(Diagnostic(f'no page about "{shown(word)}"', advice))

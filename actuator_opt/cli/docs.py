@@ -15,7 +15,7 @@ from .options import REPORTS, Json, Quiet, UnusedOut, UnusedSeed
 Topic = Annotated[
     list[str] | None,
     typer.Argument(
-        metavar="[TOPIC]",
+        metavar="TOPIC",
         help="Metric, PATH, command, material, source, term, or title of a page; default: the "
         "first page.",
     ),
@@ -58,7 +58,7 @@ def docs(
         if not quiet:
             streams.err(str(fault))
         return ExitCode.MET
-    job.answer(page.to_dict, lambda: f"{page.title}: {page.address}\n")
+    job.answer(page.to_dict, page.text)
     browser = None if no_browser or as_json else graphical_browser()
     if browser is not None and not browser.open(lead(page)) and not quiet:
         streams.err("The browser did not open: open the address above.")

@@ -8,7 +8,13 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import TYPE_CHECKING
 from urllib.parse import unquote, urlsplit
+
+from actuator_opt.base.words import fold
+
+if TYPE_CHECKING:
+    from .book import Book
 
 ROOT = Path(__file__).resolve().parents[2]
 BORROWED = {"contributing/extending.md": ROOT / "CONTRIBUTING.md"}
@@ -178,6 +184,11 @@ def html(folder: Path) -> list[str]:
         for address in page.loaded:
             if urlsplit(address).netloc or STYLE.search(address):
                 faults.append(f"{name}: loads {address} from outside")
+            elif (
+                not address.startswith(("#", "data:"))
+                and not ((folder / name).parent / _path(address)).is_file()
+            ):
+                faults.append(f"{name}: no file {address}")
         for address in page.links:
             fault, target = _resolved(name, address, pages, folder)
             faults += [f"{name}: {fault}"] if fault else []
@@ -194,6 +205,20 @@ def html(folder: Path) -> list[str]:
     return [*faults, *(f"{name}: no link from the index leads here" for name in sorted(lost))]
 
 
+def _path(address: str) -> str:
+    return unquote(urlsplit(address).path)
+
+
+def unused_images(folder: Path) -> list[Path]:
+    """Images of earlier builds that no page shows."""
+    shown = {
+        ((folder / name).parent / _path(address)).resolve()
+        for name, page in _pages(folder).items()
+        for address in page.loaded
+    }
+    return [path for path in (folder / "_images").glob("*") if path.resolve() not in shown]
+
+
 def _resolved(name: str, address: str, pages: Mapping[str, Page], folder: Path) -> tuple[str, str]:
     """Fault of a link, and the page to which it leads."""
     parts = urlsplit(address)
@@ -208,28 +233,42 @@ def _resolved(name: str, address: str, pages: Mapping[str, Page], folder: Path) 
     return "", target
 
 
-def topics(folder: Path, book: object) -> dict[str, dict[str, str]]:
-    """Address and title of each topic: names of the reference, pages, and their headings."""
-    found: dict[str, dict[str, str]] = {}
+def topics(folder: Path, book: Book) -> dict[str, list[dict[str, str]]]:
+    """Addresses and titles of each topic: names of the reference, pages, and their headings.
+
+    The first place of a word is the one that `docs` opens.
+    """
+    found: dict[str, list[dict[str, str]]] = {}
     pages = _pages(folder)
 
     def add(word: str, page: str, anchor: str, title: str) -> None:
+        places = found.setdefault(fold(word), [])
         address = f"{page}#{anchor}" if anchor else page
-        found.setdefault(word, {"address": address, "title": title})
+        known = [place["address"] for place in places]
+        if address not in known and (anchor or all(a.partition("#")[0] != page for a in known)):
+            places.append({"address": address, "title": title})
 
-    for kind, names in book.labels.items():  # type: ignore[attr-defined]
-        for name, label in names.items():
-            page = f"{book.places[label]}.html"  # type: ignore[attr-defined]
-            add(name, page, label if label in pages[page].anchors else "", f"{kind} {name}")
-    for alias, label in book.aliases.items():  # type: ignore[attr-defined]
-        page = f"{book.places[label]}.html"  # type: ignore[attr-defined]
-        add(alias, page, label if label in pages[page].anchors else "", alias)
-    for name, page in pages.items():
-        if not page.headings or name in ("search.html", "genindex.html"):
-            continue
-        add(page.headings[0][1], name, "", page.headings[0][1])
-        add(name.removesuffix(".html"), name, "", page.headings[0][1])
-        if not name.startswith("reference/"):
-            for anchor, words in page.headings[1:]:
-                add(words, name, anchor, f"{page.headings[0][1]}: {words}")
+    def add_entry(word: str, label: str, title: str) -> None:
+        page = f"{book.places[label]}.html"
+        add(word, page, label if label in pages[page].anchors else "", title)
+
+    names = [(kind, name, label) for kind, of in book.labels.items() for name, label in of.items()]
+    for kind, name, label in names:
+        if kind != "scenario":
+            add_entry(name, label, f"{kind} {name}")
+    for name, page in sorted(pages.items(), key=lambda pair: pair[0].startswith("reference/")):
+        if page.headings and name not in ("search.html", "genindex.html"):
+            title = page.headings[0][1]
+            if name.startswith("reference/"):
+                title += f" ({name.rpartition('/')[0]})"
+            for word in (page.headings[0][1], name.removesuffix(".html"), Path(name).stem):
+                add(word, name, "", title)
+            if not name.startswith("reference/"):
+                for anchor, words in page.headings[1:]:
+                    add(words, name, anchor, f"{title}: {words}")
+    for alias, label in book.aliases.items():
+        add_entry(alias, label, alias)
+    for kind, name, label in names:
+        if kind == "scenario":
+            add_entry(name, label, f"scenario key {name}")
     return found

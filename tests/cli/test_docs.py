@@ -14,11 +14,15 @@ from cli_runner import run
 
 from actuator_opt.api import documentation
 
+METRICS = "reference/metrics.html"
 TOPICS = {
-    "stiffness_min": {"address": "reference/metrics.html#metric-stiffness-min", "title": "metric"},
-    "load_cases[*].force": {"address": "reference/keys/load_cases.html", "title": "key"},
-    "mass": {"address": "reference/metrics.html#metric-mass", "title": "metric mass"},
-    "Optimality and prices": {"address": "theory/optimality.html", "title": "Optimality"},
+    "stiffness_min": [
+        {"address": f"{METRICS}#metric-stiffness-min", "title": "metric stiffness_min"},
+        {"address": "theory/stiffness.html", "title": "Stiffness"},
+    ],
+    "load_cases[*].force": [{"address": "reference/keys/load_cases.html", "title": "key"}],
+    "mass": [{"address": f"{METRICS}#metric-mass", "title": "metric mass"}],
+    "optimality_and_prices": [{"address": "theory/optimality.html", "title": "Optimality"}],
 }
 PAGES = {
     "index.html": "<title>Documentation</title>",
@@ -65,6 +69,8 @@ def test_a_topic_leads_to_its_page(copy, words, page):
     assert (done.code, done.err) == (0, "")
     assert answer["file"].endswith(page)
     assert unquote(urlsplit(answer["address"]).path) == answer["file"]
+    named = page.endswith("metrics.html") and words != ("weight",)
+    assert [place["title"] for place in answer["also"]] == (["Stiffness"] if named else [])
 
 
 def test_pages_are_unpacked_once_beside_those_of_other_builds(copy):

@@ -274,7 +274,7 @@ def _is_plain(function: ast.FunctionDef) -> bool:
 
 def test_every_command_is_registered():
     """The public functions of the modules of `cli` are commands, but for those that all share."""
-    shared = {"__init__", "app", "completion", "faults", "job", "options", "streams"}
+    shared = {"__init__", "app", "browser", "completion", "faults", "job", "options", "streams"}
     known = {("materials", "materials"), ("runs", "runs")}
     for file in Path(cli.__file__).parent.glob("*.py"):
         own = [] if file.stem in shared else ast.parse(file.read_text("utf-8")).body

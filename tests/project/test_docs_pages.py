@@ -62,7 +62,7 @@ def test_faults_of_pages_are_seen(tmp_path):
         "index.html": '<a href="good.html#here"></a><a href="good.html#no"></a><a '
         'href="x.html"></a><a href="https://doi.org/10.1"></a><script src="https://a.b/c.js"></script>',
         "good.html": '<p id="here" style="background: url(//a.b/c.png)"></p>',
-        "alone.html": '<link rel="stylesheet" href="style.css">',
+        "alone.html": '<link rel="stylesheet" href="style.css"><img src="a.png">',
     }
     for name, text in pages.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
@@ -75,9 +75,10 @@ def test_faults_of_pages_are_seen(tmp_path):
         "good.html: loads background: url(//a.b/c.png) from outside",
         "style.css: loads a style or font from outside",
         "alone.html: no link from the index leads here",
+        "alone.html: no file a.png",
     ):
         assert fault in faults
-    assert len(faults.splitlines()) == 6
+    assert len(faults.splitlines()) == 7
 
 
 def test_run_blocks(monkeypatch, tmp_path):
