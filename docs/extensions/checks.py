@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parents[2]
 BORROWED = {"contributing/extending.md": ROOT / "CONTRIBUTING.md"}
 """Pages whose text is a file outside docs/."""
+OFFERED = ROOT / "designs"
+"""Folder of files that pages offer for download, as `designs/NAME`."""
 
 OWN = {"_build", "_static", "extensions", "__pycache__"}
 """Folders of docs/ without pages."""
@@ -61,7 +63,12 @@ def written() -> dict[str, Path]:
         and path.relative_to(docs).parts[0] not in OWN
         and path.suffix not in (".py", ".pyc")
     }
-    return found | BORROWED
+    offered = {
+        path.relative_to(ROOT).as_posix(): path
+        for path in sorted(OFFERED.rglob("*.*"))
+        if path.suffix in (".yaml", ".csv")
+    }
+    return found | BORROWED | offered
 
 
 def content(path: Path) -> bytes:
