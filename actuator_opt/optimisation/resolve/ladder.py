@@ -268,6 +268,9 @@ def search_near(
             and solution.kkt.residual <= steps.RESIDUAL
         ):
             return point_of(changed, solution)
+        ends = [start.objective for start in solution.starts if start.feasible]
+        if sum(end <= solution.objective + BETTER * abs(end) for end in ends) > 1:
+            break  # several starts end here, at a kink: a sweep would only repeat that
     if solution.feasible and solution.objective < feasible.objective:
         return point_of(changed, solution)
     return feasible
