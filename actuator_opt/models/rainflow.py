@@ -91,7 +91,8 @@ def _pairs(columns: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
 
     All histories are in one row, each from its largest value to its largest value. Of four
     successive reversals the inner two are a cycle if their range is not above either of its
-    neighbours; they leave the row. In the end only the least values between the largest are left.
+    neighbours; they leave the row. Ranges that share a reversal compare as their other ends,
+    without rounding. In the end only the least values between the largest are left.
     """
     size, count = columns.shape
     values = columns.T
@@ -113,10 +114,10 @@ def _pairs(columns: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
     found = []
     while True:
         level, free = values[row], ~largest[row]
-        width = np.abs(level[1:] - level[:-1])
         inner = free[:-1] & free[1:]
-        inner[1:] &= width[1:] <= width[:-1]
-        inner[:-1] &= width[:-1] <= width[1:]
+        left, right, peak = level[:-2], level[2:], level[1:-1] > level[:-2]
+        inner[1:] &= np.where(peak, right >= left, right <= left)
+        inner[:-1] &= np.where(peak, right <= left, right >= left)
         if not inner.any():
             break
         place = np.arange(len(inner))  # of neighbours that share a reversal, every second one

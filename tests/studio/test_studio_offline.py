@@ -184,7 +184,8 @@ def test_optima_prices_and_drawing_equal_those_of_the_studio(page):
     assert found["section"]["parts"] == lineless
     assert found["section"]["lengths"] == expected["section"]["lengths"]
     drawn = [np.array(one["section"]["numbers"]) for one in (found, expected)]
-    assert np.abs(drawn[0] - drawn[1][: len(drawn[0])]).max() < 0.05  # mm; the edge of a plug is not linear
+    apart = np.abs(drawn[0] - drawn[1][: len(drawn[0])])
+    assert apart.max() < 0.05  # mm; the edge of a plug is not linear
     assert [x["part"] for x in found["masses"]] == [x["part"] for x in expected["masses"]]
     for mine, theirs in zip(found["masses"], expected["masses"], strict=True):
         assert mine["mass"] == pytest.approx(theirs["mass"], rel=1e-8)
