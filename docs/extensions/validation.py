@@ -66,8 +66,9 @@ def rows_of(group: str) -> tuple[list[list[str]], list[str]]:
         rows = [[*head, "test"]]
         for case in GROUPS[group]():
             ours = f"{number(case.value())} {case.unit}".strip()
-            row = [case.subject, published(case), case.source, ours, deviation(case)]
-            rows.append([*row, f"{number(100 * case.within, 3)} %", verdict(case), mark(case.tests)])
+            within = f"{number(100 * case.within, 3)} %"
+            row = [case.subject, published(case), case.source, ours, deviation(case), within]
+            rows.append([*row, verdict(case), mark(case.tests)])
     return rows, list(found)
 
 
