@@ -15,6 +15,7 @@ from actuator_opt.design.structure import KeyEntry, entries as keys_of, template
 
 from .book import Book
 from .markdown import escaped, fence, page, phrase, table
+from .models import theory_of
 
 ROLES = {
     "metric": "metric",
@@ -131,6 +132,7 @@ def _facts(explanation: Explanation, book: Book) -> list[tuple[str, str]]:
         "valid": phrase(explanation.validity),
         "model": ", ".join(models),
         "source": phrase(explanation.source, book.labels.get("source", ())),
+        "theory": theory_of(names),
         "see also": ", ".join(linked(name, book) for name in explanation.related),
     }
     return [*facts, *((head, text) for head, text in more.items() if text)]
