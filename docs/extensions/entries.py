@@ -12,6 +12,7 @@ from actuator_opt.design.build import TABLE_KEYS
 from actuator_opt.design.materials import load_library
 from actuator_opt.design.scenario.model import Scenario
 from actuator_opt.design.structure import KeyEntry, entries as keys_of, templates
+from actuator_opt.metrics.table import ROWS
 
 from .book import Book
 from .markdown import escaped, fence, page, phrase, table
@@ -127,7 +128,13 @@ def _facts(explanation: Explanation, book: Book) -> list[tuple[str, str]]:
         if quantity.worst:
             facts.append(("worst value", "smallest" if quantity.worst == "min" else "largest"))
     names = explanation.model.split(", ") if explanation.model else []
-    models = [f"{{model}}`{n}`" if n in book.labels.get("model", {}) else phrase(n) for n in names]
+    row = ROWS.get(explanation.entry.name) if explanation.entry.kind == "metric" else None
+    walls = {model: wall for wall, model in row.by_wall.items()} if row else {}
+    models = [
+        (f"{{model}}`{n}`" if n in book.labels.get("model", {}) else phrase(n))
+        + (f" (where `barrel.model` is `{walls[n]}`)" if n in walls else "")
+        for n in names
+    ]
     more = {
         "valid": phrase(explanation.validity),
         "model": ", ".join(models),
