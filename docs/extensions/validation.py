@@ -62,13 +62,13 @@ def rows_of(group: str) -> tuple[list[list[str]], list[str]]:
         rows += [[a.subject, a.program, a.within, mark(a.tests)] for a in AGREEMENTS]
     else:
         theirs = HEADS.get(group, "published")
-        head = ["quantity", theirs, "source", "computed", "deviation", "tolerance", "verdict"]
+        head = ["quantity", theirs, "computed", "deviation", "tolerance", "verdict", "source"]
         rows = [[*head, "test"]]
         for case in GROUPS[group]():
             ours = f"{number(case.value())} {case.unit}".strip()
             within = f"{number(100 * case.within, 3)} %"
-            row = [case.subject, published(case), case.source, ours, deviation(case), within]
-            rows.append([*row, verdict(case), mark(case.tests)])
+            row = [case.subject, published(case), ours, deviation(case), within, verdict(case)]
+            rows.append([*row, case.source, mark(case.tests)])
     return rows, list(found)
 
 
