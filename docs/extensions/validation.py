@@ -33,7 +33,8 @@ def published(case: Case) -> str:
     if case.agreement:
         return "(1: full agreement)"
     ends = case.published if isinstance(case.published, tuple) else (case.published,)
-    return f"{' to '.join(number(end, 10) for end in ends)} {case.unit}".strip()
+    digits = 10 if case.within < 1e-6 else 7
+    return f"{' to '.join(number(end, digits) for end in ends)} {case.unit}".strip()
 
 
 def deviation(case: Case) -> str:
