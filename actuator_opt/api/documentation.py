@@ -17,7 +17,7 @@ from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError, shown
 from ..base.words import fold, ranked
 from ..version import VERSION
-from .reference import LEAST, all_entries, checked_word, find, nearest_names
+from .reference import LEAST, Entry, all_entries, checked_word, find, nearest_names
 
 Topics: TypeAlias = Mapping[str, Sequence[Mapping[str, str]]]
 """Address and title of each place of a topic, the topic in the form of `fold`."""
@@ -114,8 +114,8 @@ def documentation(
 
     Parameters
     ----------
-    topic : metric, PATH, command, material, source, term, or title of a page or of a section;
-        None for the first page
+    topic : metric or words of its label, PATH, command, material, source, term, or title of a page
+        or of a section; None for the first page
     folder : where the pages are unpacked; by default the user's cache
 
     Raises
@@ -142,14 +142,22 @@ def documentation(
 
 
 def _found(word: str, topics: Topics) -> str | None:
-    """The topic of a word: by its name, or as `explain` finds it."""
+    """The topic of a word: by its name, as `explain` finds it, or by words of a metric's label."""
     if fold(word) in topics:
         return fold(word)
-    entry = find(word)
+    entry = find(word) or _labelled(word)
     if entry is None:
         return None
     generic = "".join("[*]" if k % 2 else part for k, part in enumerate(_bracketed(entry.name)))
     return next((name for name in map(fold, (entry.name, generic)) if name in topics), None)
+
+
+def _labelled(text: str) -> Entry | None:
+    """The metric whose label holds these words, at least two; of several, that of fewest words."""
+    words = set(fold(text).split("_"))
+    labels = {e: fold(e.phrase).split("_") for e in all_entries() if e.kind == "metric"}
+    found = [entry for entry, label in labels.items() if words <= set(label)]
+    return min(found, key=lambda e: len(labels[e]), default=None) if len(words) > 1 else None
 
 
 def _bracketed(name: str) -> list[str]:

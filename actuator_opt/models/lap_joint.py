@@ -212,7 +212,11 @@ def ultimate_line_force(
 
     Notes
     -----
-    Valid: long overlap, elastic walls, an adhesive that is elastic and then plastic at tau_p.
+    Valid: long overlap (below), elastic walls, adhesive elastic, then plastic at tau_p.
+
+    A long overlap is at least N/tau_p + 3 sqrt(t_a/(G (1/K_l + 1/K_f))), with N before the cap:
+    the result is within 1 % there. Near the crossover L = N/tau_p it is NOT safe: up to 4 % too
+    high for gamma_p = 0.1, up to 22 % for gamma_p = 0.01.
 
     References
     ----------

@@ -102,7 +102,8 @@ def linear_actuator(
     Chamber i, with the other chamber j: m_i p_i + e_i (c s - g) p_j = d_i G_i o - e_i a_i s x_p
     with a = (A_A, -A_B). The polynomials e_i and d_i describe the line of chamber i, and m_i is
     e_i (C_i s + g) plus a term for the flow into the line. Piston: F = a^T p - (B s + k_s) x_p.
-    Load: m s^2 x = F + F_L, and x_p = x + f F. Elimination of p by Cramer's rule gives
+    Load: m s^2 x = F + F_L with the external force F_L on the load in the direction of x, and
+    x_p = x + f F. Elimination of p by Cramer's rule gives
     N x = M F_L + T o with N = m s^2 M + P, M = det + f P, P = (B s + k_s) det + s a^T adj(.) e a,
     with the determinant det and the adjugate adj(.) of the chambers' 2 x 2 matrix.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import inspect
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -116,6 +116,24 @@ def write(book: Book) -> None:
     _write_sources(book)
 
 
+@cache
+def theory() -> dict[str, list[str]]:
+    """Links to the pages of theory that name each model."""
+    found: dict[str, list[str]] = {}
+    for path in sorted((ROOT / "docs" / "theory").glob("*.md")):
+        text = path.read_text("utf-8")
+        title = re.search(r"^# (.+)$", text, flags=re.MULTILINE)
+        link = f"[{title[1] if title else path.stem}](/theory/{path.name})"
+        for name in dict.fromkeys(re.findall(r"\{model\}`([\w.]+)`", text)):
+            found.setdefault(name, []).append(link)
+    return found
+
+
+def theory_of(names: Iterable[str]) -> str:
+    """Links to all pages of theory that name one of these models."""
+    return ", ".join(dict.fromkeys(link for name in names for link in theory().get(name, [])))
+
+
 def _summary(model: Callable[..., Any]) -> str:
     return sections(model)[""].partition("\n\n")[0]
 
@@ -141,6 +159,7 @@ def described(name: str, book: Book | None = None) -> str:
         "valid": phrase(valid[1], keys) if valid else "",
         "source": phrase(parts.get("References", ""), keys),
         "errors": phrase(parts.get("Raises", ""), keys),
+        "theory": theory_of([name]) if book is not None else "",
         "tests": ", ".join(f"`{test}`" for test in tests),
     }
     return page(

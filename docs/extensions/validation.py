@@ -2,7 +2,8 @@
 
 ``{validation} GROUP`` is a table of the cases of a group, ``{validation} claims`` and
 ``{validation} agreements`` the statements and second programs, ``{validation} summary`` a sentence
-with all counts. A verdict that does not fit its reason is an error of the build.
+with all counts, ``{validation} sources`` one on the sources that were read. A verdict that does not
+fit its reason is an error of the build.
 """
 
 from __future__ import annotations
@@ -12,21 +13,28 @@ from typing import Any
 from docutils import nodes
 from sphinx.util.docutils import SphinxDirective
 
+from .models import references
 from .validation_cases import AGREEMENTS, CLAIMS, GROUPS, faults
 from .validation_rows import Case
 
+HEADS = {"optimisation": "best known value", "independent": "own calculation"}
+"""Heading of the values of a group that are not published in the source itself."""
 
-def number(value: float) -> str:
-    """Five significant digits, as an engineer writes them."""
-    text = f"{value:.5g}"
+
+def number(value: float, digits: int = 5) -> str:
+    """Some significant digits, as an engineer writes them."""
+    text = f"{value:.{digits}g}"
     mantissa, e, power = text.partition("e")
     return f"{mantissa} × 10^{int(power)}".replace("10^", "10<sup>") + "</sup>" if e else text
 
 
 def published(case: Case) -> str:
     """The published number or range, with its unit."""
+    if case.agreement:
+        return "(1: full agreement)"
     ends = case.published if isinstance(case.published, tuple) else (case.published,)
-    return f"{' to '.join(f'{end:.7g}' for end in ends)} {case.unit}".strip()
+    digits = 10 if case.within < 1e-6 else 7
+    return f"{' to '.join(number(end, digits) for end in ends)} {case.unit}".strip()
 
 
 def deviation(case: Case) -> str:
@@ -54,13 +62,22 @@ def rows_of(group: str) -> tuple[list[list[str]], list[str]]:
         rows = [["what", "second program", "agreement", "test"]]
         rows += [[a.subject, a.program, a.within, mark(a.tests)] for a in AGREEMENTS]
     else:
-        rows = [["quantity", "published", "source", "computed", "deviation", "verdict", "test"]]
+        theirs = HEADS.get(group, "published")
+        head = ["quantity", theirs, "computed", "deviation", "tolerance", "verdict", "source"]
+        rows = [[*head, "test"]]
         for case in GROUPS[group]():
-            words = f"{_verdict(case.reproduced())}{': ' if case.why else ''}{case.why}"
             ours = f"{number(case.value())} {case.unit}".strip()
-            row = [case.subject, published(case), case.source, ours, deviation(case), words]
-            rows.append([*row, mark(case.tests)])
+            within = f"{number(100 * case.within, 3)} %"
+            row = [case.subject, published(case), ours, deviation(case), within, verdict(case)]
+            rows.append([*row, case.source, mark(case.tests)])
     return rows, list(found)
+
+
+def verdict(case: Case) -> str:
+    """Verdict of a number, with its reason."""
+    if case.solved:
+        return f"input that would explain it: {case.solved}"
+    return f"{_verdict(case.reproduced())}{': ' if case.why else ''}{case.why}"
 
 
 def _verdict(holds: bool) -> str:
@@ -69,12 +86,30 @@ def _verdict(holds: bool) -> str:
 
 def summary() -> str:
     """Counts of all cases and statements."""
-    cases = [case for group in GROUPS.values() for case in group()]
+    rows = [(group, case) for group, cases in GROUPS.items() for case in cases()]
+    solved = [case for _, case in rows if case.solved]
+    own = [case for group, case in rows if group == "independent" or case.agreement]
+    cases = [case for _, case in rows if case not in solved and case not in own]
     good, held = sum(case.reproduced() for case in cases), sum(claim.holds for claim in CLAIMS)
+    same = sum(case.reproduced() for case in own)
     return (
-        f"{len(cases)} numbers: {good} are reproduced, {len(cases) - good} are contradicted, each "
-        f"with its reason. {len(CLAIMS)} statements without a number: {held} are confirmed, "
-        f"{len(CLAIMS) - held} are not. {len(AGREEMENTS)} second programs agree."
+        f"{len(cases)} numbers of others: {good} are reproduced, {len(cases) - good} are "
+        f"contradicted, each with its reason. {len(solved)} more need an input that was solved "
+        f"from, or copied from, the published value: they confirm nothing. {len(own)} rows compare "
+        f"with own calculations or whole runs of others: {same} agree. {len(CLAIMS)} statements "
+        f"without a number: {held} are confirmed, {len(CLAIMS) - held} are not. "
+        f"{len(AGREEMENTS)} second programs agree."
+    )
+
+
+def sources() -> str:
+    """How many sources were read."""
+    seen = [entry["seen"] for entry in references().values()]
+    read = seen.count("source")
+    return (
+        f"{read} of the {len(seen)} sources in the list of {{doc}}`references <reference/sources>` "
+        f"were read for this project. The other {len(seen) - read} are quoted from memory, and "
+        "their pages were not read again. This includes most textbooks and standards."
     )
 
 
@@ -92,6 +127,8 @@ class Validation(SphinxDirective):
             if wrong:
                 raise self.error("\n".join(wrong))
             return self.parse_text_to_nodes(summary())
+        if group == "sources":
+            return self.parse_text_to_nodes(sources())
         if group not in {*GROUPS, "claims", "agreements"}:
             raise self.error(f"no group {group!r}; there are {', '.join(GROUPS)}")
         (head, *rows), tests = rows_of(group)

@@ -53,7 +53,7 @@ def elasswad() -> Iterator[Case]:
         "viscous damping at the stroke of the text, 150 mm, with 0.0265 Pa s",
         f"{paper} text on eq. 6", 0.1,
         lambda: damping.pipe_flow(dynamic_viscosity=0.0265, length=0.150),
-        f"{tests}damping_means_a_viscosity", "N s/m",
+        f"{tests}damping_means_a_viscosity", "N s/m", solved="the viscosity",
     )  # fmt: skip
     yield Case(
         "viscous damping at the stroke of table 1, 110 mm", f"{paper} table 1", 0.1,
@@ -70,6 +70,7 @@ def elasswad() -> Iterator[Case]:
         "oil stiffness at mid-stroke with 99 ml of line volume on each side",
         f"{paper} text on eq. 9", 2480.0,
         lambda: oil(99e-6) / 1e3, f"{tests}oil_stiffness_needs_99_ml", "N/mm", 0.02,
+        solved="the line volume",
     )  # fmt: skip
     yield Case(
         "rod stiffness of eq. 8 with 13.06 GPa over 110 mm", f"{paper} text on eq. 8", 13430.0,
@@ -79,7 +80,7 @@ def elasswad() -> Iterator[Case]:
             )
         )
         / 1e3,
-        f"{tests}rod_stiffness_fixes_only_e_over_l", "N/mm",
+        f"{tests}rod_stiffness_fixes_only_e_over_l", "N/mm", solved="the modulus",
     )  # fmt: skip
     yield Case(
         "rod stiffness with the published modulus of 3.48 GPa", f"{paper} text on eq. 8 and 13",
@@ -123,6 +124,7 @@ def elasswad() -> Iterator[Case]:
         "friction of eq. 15 to 20 with 0.61 at 2.22 MPa", f"{paper} text on figure 11", 166.0,
         lambda: rubbing(2.22e6),
         f"{tests}published_friction_coefficient_needs_two_megapascal", "N", 0.01,
+        solved="the pressure",
     )  # fmt: skip
 
 
@@ -156,11 +158,12 @@ def thesis() -> Iterator[Case]:
         "stiffness of the load cell, 5 kN over 0.047 mm", f"{thesis} section 3.2", 106.0,
         lambda: _aalto()[0].stiffness.load_cell / 1e6,
         f"{tests}test_the_design_is_the_cylinder_of_the_thesis", "kN/mm",
+        solved="the design file states the thesis' value",
     )  # fmt: skip
     yield Case(
         "Reynolds number of the needle at 20 mm/s", f"{thesis} section 3.3.3", 100.8,
         lambda: _aalto()[2].needle.reynolds, f"{tests}test_the_reynolds_number_means_a_viscosity",
-        within=0.02,
+        within=0.02, solved="the viscosity",
     )  # fmt: skip
     yield Case(
         "flow coefficient there, 'around 0.611'", f"{thesis} section 3.3.3", 0.611,
@@ -189,12 +192,12 @@ def thesis() -> Iterator[Case]:
     yield Case(
         "largest displacement, load up, with fitted air", f"{thesis} figure 42", (0.20, 0.21),
         lambda: _moved("fitted air, by-pass", "up"),
-        f"{tests}test_the_assumption_that_meets_the_largest", "mm", 0.02,
+        f"{tests}test_the_assumption_that_meets_the_largest", "mm", 0.02, solved="the air",
     )  # fmt: skip
     yield Case(
         "frequency of the stiffness peak, with a reducing valve of our numbers",
         f"{thesis} section 4.2.2", 20.0, lambda: _aalto()[2].peak.antiresonance_frequency[-1],
-        f"{tests}test_the_peak_lies_at_20_hz", "Hz", 0.02,
+        f"{tests}test_the_peak_lies_at_20_hz", "Hz", 0.02, solved="the reducing valve",
     )  # fmt: skip
     yield Case(
         "stiffness of the rod chamber's barrel by eq. 23, over the correct value",
@@ -221,7 +224,7 @@ def plunger() -> Iterator[Case]:
             f"damping of the seals at {mega} and 2.1 mm/s, by table 2", paper, value,
             lambda row=row: damping(row, 2.1e-3),
             f"{tests}test_the_printed_fall_holds_near_two_millimetres_per_second_only", "MN s/m",
-            0.15,
+            0.15, solved="the speed",
         )  # fmt: skip
         yield Case(
             f"damping of the seals at {mega} and 0.5 mm/s, by table 2", paper, value,
@@ -340,7 +343,7 @@ def foreign() -> Iterator[Case]:
             yield Case(
                 f"{words}, every sample: 1 − largest difference of the {label}/span",
                 f"{source}, steps of 10 µs", 1.0, 1 - share,
-                f"{cases}test_the_{words}_is_that_of_exudyn",
+                f"{cases}test_the_{words}_is_that_of_exudyn", agreement=True,
             )  # fmt: skip
     for subject, row in _named(fossee.values(_simulation("textbook_servo"))):
         yield Case(

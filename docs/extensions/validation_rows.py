@@ -22,6 +22,10 @@ class Case:
     unit : unit of both values
     within : largest relative deviation that counts as reproduced
     why : reason for a larger deviation; empty if there is none
+    solved : input that was solved from, or copied from, the published value; empty if there is
+        none. Such a row shows which input would explain the value; it confirms nothing
+    agreement : whether the value is the share of a foreign run that ours agrees with, 1 at best,
+        which nobody published
     """
 
     subject: str
@@ -32,6 +36,8 @@ class Case:
     unit: str = ""
     within: float = 0.005
     why: str = ""
+    solved: str = ""
+    agreement: bool = False
 
     def value(self) -> float:
         """The computed value."""

@@ -58,6 +58,7 @@ def copy(tmp_path, monkeypatch):
         (("stiffness_min",), "reference/metrics.html"),
         (("Stiffness", "min"), "reference/metrics.html"),
         (("weight",), "reference/metrics.html"),  # a synonym of mass
+        (("weakest", "stiffness"), "reference/metrics.html"),  # words of a label
         (("load_cases[stance].force",), "reference/keys/load_cases.html"),
         (("optimality", "and", "prices"), "theory/optimality.html"),
     ],

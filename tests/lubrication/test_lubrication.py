@@ -168,6 +168,32 @@ def test_thick_film_follows_blok(speed):
     assert film.flow == pytest.approx(speed * thickness / 2, rel=0.02)
 
 
+@pytest.mark.parametrize(("peak", "speed"), [(0.3, -0.05), (0.3, 0.05), (0.4, -0.3)])
+def test_a_lopsided_lip_follows_the_rise_along_the_motion(peak, speed):
+    """A lip with its peak off the middle: w of Blok's film is the rise in the direction of motion.
+
+    The steepest slope of the other flank misses the flow by 18 % and more.
+    """
+    place = np.linspace(0, 1, 241)
+    phase = np.where(place < peak, place / peak, 1 + (place - peak) / (1 - peak)) / 2
+    contact = replace(
+        lip(speed, nodes=241, sealed=AIR, lubricant=Lubricant(0.05)),
+        static_pressure=AIR + 4e6 * np.sin(np.pi * phase) ** 2,
+        elastic=Elastic(1e6, 0.48),
+        surface=Surface(0.05e-6, 4e15, 1e-6),
+    )
+    film = solved(contact)
+
+    def flow(flank):
+        """Flow by the steepest slope of a flank of this share of the width."""
+        steepest = np.pi * 4e6 / (2 * flank * 4e-3)
+        return speed / 2 * np.sqrt(8 * 0.05 * abs(speed) / (9 * steepest))
+
+    along, against = (peak, 1 - peak) if speed > 0 else (1 - peak, peak)
+    assert film.flow == pytest.approx(flow(along), rel=2e-3)
+    assert abs(flow(against) / film.flow - 1) > 0.17
+
+
 def test_mirror():
     """Turned end for end with the speed turned too: the same film, flow and drag turned."""
     contact = lip(0.3)

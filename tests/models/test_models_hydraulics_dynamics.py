@@ -40,15 +40,17 @@ def rubbing(damping):
     return damping / (2 * math.sqrt(STIFFNESS * 30.0))
 
 
-def mode(conductance, damping):
-    """Mode of the linear model of the same cylinder."""
+def mode(conductance, damping, flexibility=0.0):
+    """Mode of the linear model of the same cylinder, with rod and mount of this flexibility."""
     sides = {
         f"side_{c}": Side(
             CHAMBERS[f"area_{c}"], CHAMBERS[f"compliance_{c}"], end=LineEnd((conductance,))
         )
         for c in "ab"
     }
-    return load_mode(model=linear_actuator(**sides, mass=30.0, damping=damping), near=132.0)
+    load = {"mass": 30.0, "damping": damping, "flexibility": flexibility}
+    near = 132.0 / math.sqrt(1 + flexibility * STIFFNESS)
+    return load_mode(model=linear_actuator(**sides, **load), near=near)
 
 
 def test_frequency_and_damping_check_values():
@@ -67,6 +69,40 @@ def test_the_shares_are_those_of_the_poles():
         share = leak(CONDUCTANCE * factor)
         assert poles.damping_ratio == pytest.approx(friction + share, rel=2e-3 * factor)
         assert poles.natural_frequency == pytest.approx(132.071, rel=2e-3 * factor**2 + 1e-5)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 4.0])
+def test_a_flexible_rod_lowers_both_shares(ratio):
+    """(k/k_h)^2 [B/(2 sqrt(k m)) + sum(A^2 G/C^2)/(2 omega k)] with k of oil, rod and mount.
+
+    ratio : stiffness of rod and mount over that of the oil
+    """
+    k = STIFFNESS * ratio / (1 + ratio)
+    omega = math.sqrt(k / 30.0)
+    lost = sum((CHAMBERS[f"area_{c}"] / CHAMBERS[f"compliance_{c}"]) ** 2 for c in "ab")
+    for friction, conductance in ((4.0, 0.0), (0.0, 0.01 * CONDUCTANCE)):
+        bracket = friction / (2 * math.sqrt(k * 30.0)) + lost * conductance / (2 * omega * k)
+        poles = mode(conductance, friction, 1 / (ratio * STIFFNESS))
+        assert poles.damping_ratio == pytest.approx((k / STIFFNESS) ** 2 * bracket, rel=1e-4)
+        assert poles.natural_frequency == pytest.approx(omega / (2 * math.pi), rel=1e-5)
+
+
+def test_a_slow_load_on_the_loop_meets_a_finite_stiffness():
+    """Spool o = -K_p x, ports that leak: at 0 Hz K_p (A_A G_qA/G_A + A_B G_qB/G_B)."""
+    gains, leaks, gain = {"a": 2e-4, "b": 3e-4}, {"a": 2e-11, "b": 5e-11}, 50.0
+    sides = {
+        f"side_{c}": Side(
+            CHAMBERS[f"area_{c}"],
+            CHAMBERS[f"compliance_{c}"],
+            end=LineEnd((leaks[c],)),
+            flow_gain=sign * gains[c],
+        )
+        for c, sign in (("a", 1.0), ("b", -1.0))
+    }
+    model = linear_actuator(**sides, mass=30.0, damping=400.0)
+    loop = (model.characteristic[0] + gain * model.drive[0]) / model.mobile[0]
+    by_hand = gain * sum(CHAMBERS[f"area_{c}"] * gains[c] / leaks[c] for c in "ab")
+    assert loop == pytest.approx(by_hand, rel=1e-12)
 
 
 def test_falling_friction_makes_the_ratio_negative():

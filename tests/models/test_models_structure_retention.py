@@ -300,33 +300,60 @@ def test_a_brittle_bond_breaks_at_the_sum_of_both_shears(mismatch):
     assert by_force + by_heat == pytest.approx(28e6, rel=1e-6)
 
 
-@pytest.mark.parametrize("mismatch", [0.0, 6e-4])
-def test_breaking_force_of_a_ductile_bond_by_shooting(mismatch):
-    """Both walls and the adhesive's curve, integrated along the overlap until the edge breaks."""
+def shot(*, overlap, plastic, mismatch):
+    """Breaking force: both walls and the adhesive's curve, integrated along the overlap."""
     lag, strong, thick, loaded, free = 1.2e9, 28e6, 0.15e-3, 120e6, 140e6
-    failure, overlap = strong / lag + 0.03, 30e-3
 
-    def along(x, state):
-        gamma, force = state
-        strain = force / loaded + mismatch - (total - force) / free
-        return [strain / thick, np.clip(lag * gamma, -strong, strong)]
-
-    def left(guess):
+    def left(total):
         """Force of the loaded wall at its free end; it is 0 if the guessed total is right."""
-        nonlocal total
-        total = guess
-        end = solve_ivp(along, (overlap, 0), [failure, total], rtol=1e-10, atol=1e-12)
+
+        def along(x, state):
+            gamma, force = state
+            strain = force / loaded + mismatch - (total - force) / free
+            return [strain / thick, np.clip(lag * gamma, -strong, strong)]
+
+        start = [strong / lag + plastic, total]
+        end = solve_ivp(along, (overlap, 0), start, rtol=1e-10, atol=1e-12)
         return end.y[1, -1] / total
 
-    total = 0.0
-    brentq(left, 50e3, 600e3, rtol=1e-10)
+    total = brentq(left, 50e3, 600e3, rtol=1e-10)
     assert abs(left(total)) < 1e-3
-    line = lap_joint.ultimate_line_force(
-        strain_difference=mismatch,
-        plastic_shear_strain=0.03,
-        **(ADHESIVE | {"length": overlap}),
-    )
-    assert total == pytest.approx(float(line), rel=2e-2)
+    return total
+
+
+def by_formula(*, overlap, plastic, mismatch):
+    """The same by the closed form."""
+    bond = ADHESIVE | {"length": overlap, "plastic_shear_strain": plastic}
+    return float(lap_joint.ultimate_line_force(strain_difference=mismatch, **bond))
+
+
+@pytest.mark.parametrize("mismatch", [0.0, 6e-4])
+def test_breaking_force_of_a_ductile_bond_by_shooting(mismatch):
+    """A long bond breaks where the integration along its overlap says."""
+    case = {"overlap": 30e-3, "plastic": 0.03, "mismatch": mismatch}
+    assert shot(**case) == pytest.approx(by_formula(**case), rel=2e-2)
+
+
+@pytest.mark.parametrize("plastic", [0.01, 0.1])
+def test_a_ductile_bond_near_the_crossover_breaks_earlier(plastic):
+    """Formula and cap are too high at their crossover, and 1 % off three decay lengths beyond."""
+    case = {"plastic": plastic, "mismatch": 4e-4}
+    crossover = by_formula(overlap=1.0, **case) / 28e6
+    decay = np.sqrt(0.15e-3 / (1.2e9 * (1 / 120e6 + 1 / 140e6)))
+    short, valid = (case | {"overlap": crossover + n * decay} for n in (0, 3))
+    excess = by_formula(**short) / shot(**short) - 1
+    assert excess == pytest.approx({0.01: 0.219, 0.1: 0.040}[plastic], abs=2e-3)
+    assert shot(**valid) == pytest.approx(by_formula(**valid), rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("overlap", "alone", "cooled"),
+    [(16e-3, 439.3, 379.0), (20e-3, 453.5, 383.8), (30e-3, 457.1, 385.2)],
+)
+def test_breaking_forces_of_the_page(overlap, alone, cooled):
+    """The table of the page on bonded joints, in N/mm."""
+    forces = [shot(overlap=overlap, plastic=0.1, mismatch=e) / 1e3 for e in (0.0, 6e-4)]
+    assert forces == pytest.approx([alone, cooled], abs=0.06)
 
 
 def test_peel_by_the_worked_numbers():
