@@ -6,7 +6,18 @@ from collections.abc import Sequence
 from math import pi
 from typing import NamedTuple
 
-from ..base.numeric import Array, geometry, maximum, minimum, namespace, positive, sqrt
+from ..base.numeric import (
+    Array,
+    absolute,
+    geometry,
+    maximum,
+    minimum,
+    namespace,
+    positive,
+    real,
+    sqrt,
+    where,
+)
 
 
 def _edge_ratio(*, loaded: Array, free: Array, reach: Array) -> Array:
@@ -177,6 +188,11 @@ def bond_thermal_shear(
     return lag * strain_difference / decay * namespace(decay).tanh(decay * length / 2)
 
 
+STEPS, NONE, FAR = 12, 1e-12, 300.0
+"""Newton steps for the elastic length of a bond; their least plastic strain and slope, and the
+largest length in their hyperbolic cosine."""
+
+
 @geometry
 def ultimate_line_force(
     *,
@@ -191,9 +207,11 @@ def ultimate_line_force(
 ) -> Array:
     """Force per circumference at which one edge of a ductile bond breaks, with unequal expansion.
 
-    N = K_l (sqrt(2 t_a U (1/K_l + 1/K_f)) - (e_l - e_f)), at most tau_p L. U = tau_p (gamma_e/2 +
-    gamma_p), gamma_e = tau_p/G, is the area under the adhesive's shear curve. In a ductile
-    adhesive, the stresses of force and temperature do not add; their strains do.
+    N = K_l (sqrt(2 t_a U (1/K_l + 1/K_f)) - (e_l - e_f)), at most tau_p L, with
+    U = tau_p (gamma_p + gamma_e/2 tanh^2 y), gamma_e = tau_p/G. Between the plastic zones of both
+    edges, a length 2 y/lambda stays elastic, lambda = sqrt(G (1/K_l + 1/K_f)/t_a). It is what the
+    zones leave of L; in a long overlap, U is the area under the adhesive's shear curve. In a
+    ductile adhesive, the stresses of force and temperature do not add; their strains do.
 
     Parameters
     ----------
@@ -212,11 +230,13 @@ def ultimate_line_force(
 
     Notes
     -----
-    Valid: long overlap (below), elastic walls, adhesive elastic, then plastic at tau_p.
+    Valid: any overlap, elastic walls, adhesive elastic, then plastic at tau_p.
 
-    A long overlap is at least N/tau_p + 3 sqrt(t_a/(G (1/K_l + 1/K_f))), with N before the cap:
-    the result is within 1 % there. Near the crossover L = N/tau_p it is NOT safe: up to 4 % too
-    high for gamma_p = 0.1, up to 22 % for gamma_p = 0.01.
+    In the elastic middle, the shear strain is gamma_e cosh(lambda x)/cosh(y). Its slope at both
+    ends is g = lambda gamma_e tanh(y). From there it rises by z = tau_p (1/K_l + 1/K_f)/t_a per
+    length, to s = sqrt(g^2 + 2 z gamma_p) at this edge and to r = (N/K_f - e_l + e_f)/t_a at the
+    other: L = (s - g)/z + max(r - g, 0)/z + 2 y/lambda, solved by `STEPS` Newton steps. If the
+    other edge stays elastic (r < g), the middle ends there earlier, and N is a lower bound.
 
     References
     ----------
@@ -224,15 +244,34 @@ def ultimate_line_force(
 
     Examples
     --------
-    >>> line_force = ultimate_line_force(strain_difference=6e-4, length=16e-3, strength=28e6,
+    >>> line_force = ultimate_line_force(strain_difference=6e-4, length=60e-3, strength=28e6,
     ...     shear_modulus=1.2e9, plastic_shear_strain=0.1, bond_thickness=0.15e-3,
     ...     membrane_stiffness_loaded=120e6, membrane_stiffness_free=140e6)
     >>> print(f"{line_force / 1e3:.3f} N/mm")
     385.209 N/mm
     """
-    energy = strength * (strength / shear_modulus / 2 + plastic_shear_strain)
     flex = 1 / membrane_stiffness_loaded + 1 / membrane_stiffness_free
-    reach = sqrt(2 * bond_thickness * energy * flex) - strain_difference
+    lag = sqrt(shear_modulus * flex / bond_thickness)
+    size = strength * flex / lag  # slip per length that is z/lambda: the unit of all slopes below
+    brittle = 2 * maximum(plastic_shear_strain, NONE) * shear_modulus / strength
+    ratio = membrane_stiffness_loaded / membrane_stiffness_free
+    y = lag * length / 2
+    xp = namespace(y)
+    for _ in range(STEPS):
+        wave = xp.tanh(y)
+        edge = sqrt(wave**2 + brittle)
+        other = ratio * edge - (1 + ratio) * strain_difference / size
+        bent = wave * (1 - wave**2) / edge
+        cosine = xp.cosh(minimum(y, FAR))
+        slip, turn = other * cosine, (ratio * bent + other * wave) * cosine
+        short = xp.log(absolute(slip) + sqrt(slip**2 + 1))
+        yields = real(other) > real(wave)
+        beyond = where(yields, other - wave + y, where(real(slip) > 0, short, -short))
+        growth = where(yields, ratio * bent + wave**2, turn / sqrt(slip**2 + 1))
+        excess = edge - wave + y + beyond - lag * length
+        change = bent + wave**2 + growth
+        y = maximum(y - excess / maximum(change, NONE), 0.0)
+    reach = size * sqrt(xp.tanh(y) ** 2 + brittle) - strain_difference
     return minimum(maximum(membrane_stiffness_loaded * reach, 0.0), strength * length)
 
 
