@@ -104,7 +104,7 @@ function predicted() {
 // ---- at rest: prices, the card if nothing fits, curves nearest first ----
 const UNKNOWN = { points: [], budget: null, none: false };
 const REST = { timer: 0, ranked: new Map(), done: false };
-// Parts that not every page has, each with some of these: described(design), shown(), painted(), and
+// Parts that not every page has, each with some of these: described(design), painted(), and
 // rest(changes, stale), which asks for more at rest and returns false if it has to ask again.
 const PARTS = [];
 
@@ -241,7 +241,6 @@ function travel(from, to) {
 }
 function showChanges() {
   for (const [path, slider] of S.sliders) { slider.refuse(""); slider.show(S.changes[path] ?? slider.file); }
-  for (const part of PARTS) part.shown?.();
   solve();
   paint();
 }
