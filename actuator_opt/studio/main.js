@@ -81,7 +81,9 @@ function paintPrices() {
   for (const [path, slider] of S.sliders) {
     const priced = S.priced && S.priced.prices.get(path), fits = priced && keyOf(S.priced.changes, path) === keyOf(S.changes, path);
     const edges = slider.paint(fits ? priced : null, curveOf(path));
-    slider.tell(priced, goal, edges, priced && S.priced.key !== keyOf(S.changes));
+    // A price of another design is not the price of a wish that nothing fits.
+    const lost = S.searching === keyOf(S.changes) || !S.shown.feasible;
+    slider.tell(lost ? null : priced, goal, edges, priced && S.priced.key !== keyOf(S.changes), priced && S.priced.shown.reached?.[path]);
   }
   paintTrade();
 }

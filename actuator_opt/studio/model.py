@@ -17,7 +17,7 @@ from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.progress import watched
 from ..base.quantities import Quantity
 from ..design import get, quantity_of
-from ..design.paths import numbers, words_of
+from ..design.paths import numbers
 from ..design.writer import exact_text
 from ..evaluation import Evaluation
 from ..evaluation.result import Check, Requirement
@@ -167,7 +167,7 @@ class Studio:
             "cycles": [x.name for x in design.duty.cycles] if design.duty is not None else [],
             "numbers": [row for row in rows if row is not None],
             "dimensions": [
-                {"path": row.path, "label": words_of(row.path), "low": row.lower, "high": row.upper}
+                {"path": row.path, "label": quick.label_of(row.path), "low": row.lower, "high": row.upper}
                 | scale_of(quantity_of(row.path, design))
                 for row in optimum.variables
             ],
@@ -188,7 +188,7 @@ class Studio:
         quantity = quantity_of(path, self.actuator.design)
         if not math.isfinite(value):
             return None
-        label, sense = words_of(path), ""
+        label, sense = quick.label_of(path), ""
         if path.startswith("requirements."):
             sense = "≥" if path.endswith(".min") else "≤"
         elif path.startswith("load_cases["):
@@ -667,7 +667,7 @@ def _held(evaluation: Evaluation, result: Optimisation) -> list[dict[str, Any]]:
     design = evaluation.design
     return rows + [
         {
-            "name": words_of(row.path),
+            "name": quick.label_of(row.path),
             "limit": f"{row.at_bound} bound",
             "value": quantity_of(row.path, design).text(row.value),
             "where": "",

@@ -90,27 +90,31 @@ class Slider {
     if (this.row.whole) return Array.from({ length: this.high - this.low + 1 }, (_, k) => this.low + k);
     return Array.from({ length: AHEAD + 1 }, (_, k) => exact(this.low + (this.high - this.low) * k / AHEAD));
   }
-  // The price in words; `price` in SI, `edges` where no design was found.
-  tell(price, goal, edges, old) {
+  // The price in words; `price` in SI, `edges` where no design was found, `reached` the metric of a limit.
+  tell(price, goal, edges, old, reached) {
     const words = [], { row } = this;
     // Small numbers get their price per 0.1, 0.01, … of the unit, about a fifth of the number.
     const size = Math.abs(this.value) || row.size, share = row.whole ? 1 : size < 2 ? exact(10 ** Math.floor(Math.log10(size / 5))) : 1;
     const small = (slope) => Math.abs(slope * row.size / row.factor) < 1e-4 * Math.abs(goal.now), nothing = price && small(price.up) && small(price.down);
-    if (this.same("told", price, old, edges.low, edges.high, share, nothing)) return;
+    if (this.same("told", price, old, edges.low, edges.high, share, nothing, reached)) return;
     if (price) {
       const per = (slope) => signed(share * slope * goal.factor / row.factor, 3);
-      const unit = withUnit(goal.unit || goal.label, `per ${share === 1 && row.unit ? row.unit : withUnit(String(share), row.unit)}`);
+      const unit = withUnit(goal.unit || goal.label, `per ${share === 1 && row.unit ? row.unit : share === 1e-3 && row.unit === "mm" ? "µm" : withUnit(String(share), row.unit)}`);
       const strong = node("strong");
+      const now = reached === undefined || reached === null ? null : exact(shown(row, reached));
+      const slack = now !== null && (row.sense === "≤" ? now < this.value : row.sense === "≥" && now > this.value);
       const inside = (si) => si !== null && (row.lower === null || si > row.lower) && (row.upper === null || si < row.upper);
       const [low, high] = [price.low, price.high].map((si) => (inside(si) ? exact(shown(row, si)) : null)), digits = (v) => trimmed(v, 3);
       if (row.whole) {
         const next = (slope, more) => `${slope === null ? "none found" : per(more ? slope : -slope)} with one ${more ? "more" : "fewer"}`;
-        strong.textContent = nothing ? "costs nothing" : `${goal.unit || goal.label}: ${next(price.up, true)}, ${next(price.down, false)}`;
+        strong.textContent = nothing ? "no effect now" : `${goal.unit || goal.label}: ${next(price.up, true)}, ${next(price.down, false)}`;
       } else if (price.up === null && price.down === null) strong.textContent = "no design if it changes";
-      else if (nothing) strong.textContent = "costs nothing";
+      else if (nothing) strong.textContent = slack ? `costs nothing ${row.sense === "≤" ? "above" : "below"} ${this.text(now, 3)} (now ${this.text(now, 4)})` : "no effect now";
       else if (price.up === price.down || Math.abs(price.up - price.down) < 1e-6 * Math.abs(price.up)) strong.textContent = `${per(price.up)} ${unit}`;
       else strong.textContent = `${price.up === null ? "no design" : per(price.up)} more, ${price.down === null ? "no design" : per(price.down)} less, ${unit}`;
-      words.push(strong, row.whole ? "" : low !== null && high !== null ? `, holds from ${digits(low)} to ${digits(high)}` : low !== null ? `, holds from ${digits(low)} up` : high !== null ? `, holds up to ${digits(high)}` : ", holds throughout");
+      const held = low !== null && high !== null ? `from about ${digits(low)} to ${this.text(high, 3)}` : low !== null ? `from about ${this.text(low, 3)} up` : high !== null ? `up to about ${this.text(high, 3)}` : "";
+      const alone = price.up === null && price.down === null;
+      words.push(strong, row.whole || nothing || alone ? "" : held ? ` here; the same limits hold ${held}` : " in the whole range");
       this.price.title = row.whole ? "" : [low !== null && `below ${this.text(low, 3)}: ${price.below}`, high !== null && `above ${this.text(high, 3)}: ${price.above}`].filter(Boolean).join("\n");
     } else this.price.title = "";
     if (edges.low !== null) words.push(`${words.length ? "; " : ""}none found at ${this.text(edges.low, 4)} or less`);

@@ -89,6 +89,10 @@ def test_it_opens_with_the_optimum_and_hides_its_key(studio):
     assert studio.page.locator("#section path").count() > 10
     studio.page.locator(f'.wish[data-path="{STIFFNESS}"] .price strong').wait_for()
     studio.page.locator("#fixed .wish").first.wait_for(timeout=60_000)
+    prices = studio.page.locator("#asked .price").all_text_contents()
+    assert any(re.fullmatch(r".* g per kN/mm here; the same limits hold from about .*", x) for x in prices)
+    slack = [re.fullmatch(r"costs nothing above (\S+) N \(now (\S+) N\)", x) for x in prices]
+    assert [float(x[1]) for x in slack if x] == [pytest.approx(float(x[2]), rel=5e-3) for x in slack if x] != []
     studio.page.reload()  # the tab keeps its key
     assert studio.mass == pytest.approx(1000 * best, abs=0.06)
 
