@@ -95,7 +95,7 @@ function measured(point, { limits, fixed }) {
   });
 }
 function held(point, { limits }, found) {
-  const rows = [], text = (scale, si) => withUnit(trimmed(shown(scale, si), 4), scale.unit);
+  const rows = [], text = (scale, si) => withUnit(grouped(trimmed(shown(scale, si), 4)), scale.unit);
   DATA.limits.forEach((limit, k) => {
     const { margin, value, where } = found[k], missed = margin < -MET;
     if (!(limit.rows.length ? margin <= ACTIVE : missed)) return;
@@ -129,7 +129,7 @@ function sentence(best, holds) {
   const missed = holds.filter((row) => row.missed).map((row) => `  ${row.name} ${row.value}, asked ${row.limit}`);
   const why = best.known ? "No design was found near the known ones." : "This page cannot calculate such designs: its models were recorded for others.";
   return [why, ...(missed.length ? ["Nearest miss:", ...missed] : []), "This page searches only near the optima that it was made with.",
-    "“Copy command” gives the command of a full search, which also says what would help."].join("\n");
+    "“Command …” gives the command of a full search, which also says what would help."].join("\n");
 }
 
 // ---- requests ----

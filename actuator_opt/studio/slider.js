@@ -8,7 +8,7 @@ class Slider {
     this.row = row;
     this.acts = acts;
     this.value = exact(shown(row, row.value));
-    this.file = this.value;
+    this.file = this.fits = this.value;
     const id = `n${Slider.count++}`;
     this.field = node("input", { type: "text", id, autocomplete: "off", spellcheck: false });
     this.range = node("input", { type: "range", step: "any" });
@@ -26,10 +26,11 @@ class Slider {
     this.listen();
     this.show(this.value);
   }
-  // Let the range reach a quarter of the number's size below and above a value.
+  room(value) { return this.row.whole ? NEIGHBOURS : SHARE * (Math.abs(value) || this.row.size); }
+  // Let the range reach a quarter of the number's size below and above a value, and the last value that fits.
   centre(value) {
-    const { row } = this, room = row.whole ? NEIGHBOURS : SHARE * (Math.abs(value) || row.size);
-    const ends = [value - room, value + room], limits = [row.lower, row.upper].map((si) => (si === null ? null : shown(row, si)));
+    const { row } = this, room = this.room(value);
+    const ends = [Math.min(value - room, this.fits), Math.max(value + room, this.fits)], limits = [row.lower, row.upper].map((si) => (si === null ? null : shown(row, si)));
     this.low = limits[0] === null ? ends[0] : Math.max(ends[0], limits[0]);
     this.high = limits[1] === null ? ends[1] : Math.min(ends[1], limits[1]);
     this.step = row.whole ? 1 : roundStep((this.high - this.low) / STEPS);
@@ -55,6 +56,15 @@ class Slider {
     });
     this.field.addEventListener("change", () => this.acts.typed(this, this.field.value.trim()));
     this.field.addEventListener("keydown", (event) => { if (event.key === "Escape") { this.refuse(""); this.show(this.value); } });
+  }
+  // Show a value of the past; a range that a far wish has widened shrinks again.
+  restore(value) {
+    this.refuse("");
+    if (this.high - this.low > 4 * this.room(value)) {
+      this.fits = value;
+      this.centre(value);
+    }
+    this.show(value);
   }
   show(value) {
     this.value = value;

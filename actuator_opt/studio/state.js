@@ -3,7 +3,7 @@
 const PATIENCE = 400, CALM = 250, MOST_UNDO = 200, CHUNK = 5, MERGE = 800;
 const S = {
   design: null, goal: null, sliders: new Map(), menus: new Map(), describedFor: "", changes: {}, committed: {}, past: [], future: [],
-  shown: null, shownFor: "", searching: "", good: null, A: null, priced: null, curves: new Map(), focused: "", touched: { path: "", key: false, time: 0 },
+  shown: null, shownFor: "", searching: "", good: null, goodFor: {}, A: null, priced: null, curves: new Map(), focused: "", touched: { path: "", key: false, time: 0 },
 };
 
 const keyOf = (changes, without) => JSON.stringify(Object.keys(changes).filter((path) => path !== without).sort().map((path) => [path, changes[path]]));
@@ -58,7 +58,11 @@ function truth(data, changes) {
   S.searching = "";
   S.shown = data;
   S.shownFor = keyOf(changes);
-  if (data.feasible) S.good = data;
+  if (data.feasible) {
+    S.good = data;
+    S.goodFor = changes;
+    for (const [path, slider] of S.sliders) slider.fits = changes[path] ?? slider.file;
+  }
   paint();
   if (S.shownFor === keyOf(S.changes)) {
     byId("main").setAttribute("aria-busy", "false");
@@ -88,17 +92,26 @@ function predicted() {
   const [path] = different, slider = S.sliders.get(path), price = S.priced.prices.get(path);
   if (!slider) return null;  // a word has no price
   const si = (slider.value - slider.row.offset) / slider.row.factor;
-  if (price && (price.low === null || si >= price.low) && (price.high === null || si <= price.high)) {
+  if (price && !beyond() && (price.low === null || si >= price.low) && (price.high === null || si <= price.high)) {
     const step = si - price.value, slope = step > 0 ? price.up : price.down, { section, objective } = S.priced.shown;
     if (slope !== null) return {
       objective: objective + slope * step,
       section: price.section && { ...section, numbers: section.numbers.map((one, k) => one + step * price.section[k]) },
     };
   }
+  if (beyond()) return null;
   const points = curveOf(path), k = points.findIndex((one) => one.x >= slider.value);
   if (k < 1 || points[k].y === null || points[k - 1].y === null) return null;
   const [from, to] = [points[k - 1], points[k]], share = (slider.value - from.x) / (to.x - from.x);
   return { objective: from.y + share * (to.y - from.y), section: null };
+}
+
+// Whether the wish is as far from the last design that fits as a value that is known to have none.
+function beyond() {
+  const { path } = S.touched, slider = S.sliders.get(path);
+  if (!slider) return false;
+  const from = S.goodFor[path] ?? slider.file, to = slider.value;
+  return curveOf(path).some((one) => one.y === null && (one.x - from) * (to - one.x) >= 0 && one.x !== from);
 }
 
 // ---- at rest: prices, the card if nothing fits, curves nearest first ----
@@ -240,7 +253,7 @@ function travel(from, to) {
   showChanges();
 }
 function showChanges() {
-  for (const [path, slider] of S.sliders) { slider.refuse(""); slider.show(S.changes[path] ?? slider.file); }
+  for (const [path, slider] of S.sliders) slider.restore(S.changes[path] ?? slider.file);
   solve();
   paint();
 }

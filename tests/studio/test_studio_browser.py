@@ -95,6 +95,9 @@ def test_it_opens_with_the_optimum_and_hides_its_key(studio):
     assert [float(x[1]) for x in slack if x] == [pytest.approx(float(x[2]), rel=5e-3) for x in slack if x] != []
     studio.page.reload()  # the tab keeps its key
     assert studio.mass == pytest.approx(1000 * best, abs=0.06)
+    studio.page.keyboard.press("Tab")
+    studio.page.keyboard.press("Enter")
+    assert studio.page.evaluate("document.activeElement.closest('#asked') !== null")
 
 
 def test_keys_forecast_and_truth(studio):
@@ -200,7 +203,9 @@ def test_what_nothing_reaches_is_searched_for(studio):
     studio.field().press("Enter")
     page.locator("#objective").filter(has_text="no design found yet, searching").wait_for()
     assert page.locator("body.stale").count() == 1
-    assert "shown in grey" in studio.text("lengths")
+    assert re.search(r"shown in grey: [\d.]+ g, at stiffness 9.2 kN/mm", studio.text("lengths"))
+    assert float(studio.slider().get_attribute("min")) <= 9.2
+    assert page.locator("#asked .price strong").count() == 0
     page.keyboard.press("Escape")
     studio.slider().focus()
     page.keyboard.press("Control+z")
