@@ -13,7 +13,7 @@ function paint() {
   const objective = forecast ? forecast.objective : design.objective;
   const nothing = current && !truthNow.feasible, near = current && typeof design.within === "number";
   // Beyond a value that reached no design, and after a wish that nothing fits, no mass is shown before it is known.
-  const lost = !current && !forecast && (!truthNow.feasible || beyond());
+  const lost = !current && !forecast && (!truthNow.feasible || S.searching || beyond());
   const within = near ? `, within ${withUnit(trimmed(design.within * S.goal.factor, 2), S.goal.unit)}` : "";
   byId("objective").textContent = searching ? "no design found yet, searching …" : nothing ? "nothing fits" : objective === null ? "no objective" : lost ? "updating …" : `${objectiveText(objective, forecast || near)}${within}${current || forecast ? "" : ", updating …"}`;
   byId("objective").className = current && !near ? "" : "about";
@@ -146,7 +146,6 @@ const ACTS = {
     change(slider.row.path, slider.value);
     slider.refuse("");
     if (S.touched.path !== slider.row.path) S.touched = { path: slider.row.path, key: false, time: 0 };
-    note("");
     solve();
     paint();
   },

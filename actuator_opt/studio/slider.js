@@ -57,10 +57,11 @@ class Slider {
     this.field.addEventListener("change", () => this.acts.typed(this, this.field.value.trim()));
     this.field.addEventListener("keydown", (event) => { if (event.key === "Escape") { this.refuse(""); this.show(this.value); } });
   }
-  // Show a value of the past; a range that a far wish has widened shrinks again.
+  // Show a value of the past; a range that a far wish has widened or moved is as at first.
   restore(value) {
+    const room = this.room(value);
     this.refuse("");
-    if (this.high - this.low > 4 * this.room(value)) {
+    if (this.high - this.low > 4 * room || value - this.low < room / 2 || this.high - value < room / 2) {
       this.fits = value;
       this.centre(value);
     }
@@ -119,7 +120,7 @@ class Slider {
         const next = (slope, more) => `${slope === null ? "none found" : per(more ? slope : -slope)} with one ${more ? "more" : "fewer"}`;
         strong.textContent = nothing ? "no effect now" : `${goal.unit || goal.label}: ${next(price.up, true)}, ${next(price.down, false)}`;
       } else if (price.up === null && price.down === null) strong.textContent = "no design if it changes";
-      else if (nothing) strong.textContent = slack ? `costs nothing ${row.sense === "≤" ? "above" : "below"} ${this.text(now, 3)} (now ${this.text(now, 4)})` : "no effect now";
+      else if (nothing) strong.textContent = slack ? `costs nothing ${row.sense === "≤" ? "above" : "below"} ${this.text(now, 3)}${trimmed(now, 3) === trimmed(now, 4) ? "" : ` (now ${this.text(now, 4)})`}` : "no effect now";
       else if (price.up === price.down || Math.abs(price.up - price.down) < 1e-6 * Math.abs(price.up)) strong.textContent = `${per(price.up)} ${unit}`;
       else strong.textContent = `${price.up === null ? "no design" : per(price.up)} more, ${price.down === null ? "no design" : per(price.down)} less, ${unit}`;
       const held = low !== null && high !== null ? `from about ${digits(low)} to ${this.text(high, 3)}` : low !== null ? `from about ${this.text(low, 3)} up` : high !== null ? `up to about ${this.text(high, 3)}` : "";

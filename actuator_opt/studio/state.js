@@ -3,7 +3,7 @@
 const PATIENCE = 400, CALM = 250, MOST_UNDO = 200, CHUNK = 5, MERGE = 800;
 const S = {
   design: null, goal: null, sliders: new Map(), menus: new Map(), describedFor: "", changes: {}, committed: {}, past: [], future: [],
-  shown: null, shownFor: "", searching: "", good: null, goodFor: {}, A: null, priced: null, curves: new Map(), focused: "", touched: { path: "", key: false, time: 0 },
+  shown: null, shownFor: "", searching: "", good: null, goodFor: {}, lost: {}, A: null, priced: null, curves: new Map(), focused: "", touched: { path: "", key: false, time: 0 },
 };
 
 const keyOf = (changes, without) => JSON.stringify(Object.keys(changes).filter((path) => path !== without).sort().map((path) => [path, changes[path]]));
@@ -17,6 +17,7 @@ function change(path, value) {
   if (value === control(path).file) delete next[path];
   else next[path] = value;
   S.changes = next;
+  note("");
 }
 
 // ---- one request under way; the newest wish waits, or replaces a slow one ----
@@ -62,7 +63,7 @@ function truth(data, changes) {
     S.good = data;
     S.goodFor = changes;
     for (const [path, slider] of S.sliders) slider.fits = changes[path] ?? slider.file;
-  }
+  } else S.lost = changes;
   paint();
   if (S.shownFor === keyOf(S.changes)) {
     byId("main").setAttribute("aria-busy", "false");
@@ -74,6 +75,7 @@ function truth(data, changes) {
 async function search(changes) {
   const serial = LINE.latest;
   S.searching = keyOf(changes);
+  S.lost = changes;
   paint();
   let data = { dropped: true };
   try { data = await ask("solve", { changes: wishes(changes), whole: true }); } catch (fault) { if (!(fault instanceof Unfit)) throw fault; }
@@ -111,7 +113,9 @@ function beyond() {
   const { path } = S.touched, slider = S.sliders.get(path);
   if (!slider) return false;
   const from = S.goodFor[path] ?? slider.file, to = slider.value;
-  return curveOf(path).some((one) => one.y === null && (one.x - from) * (to - one.x) >= 0 && one.x !== from);
+  const gaps = curveOf(path).filter((one) => one.y === null).map((one) => one.x);
+  if ((S.searching || !S.shown.feasible) && path in S.lost) gaps.push(S.lost[path]);
+  return gaps.some((gap) => gap !== from && (gap - from) * (to - gap) >= 0);
 }
 
 // ---- at rest: prices, the card if nothing fits, curves nearest first ----
@@ -254,6 +258,7 @@ function travel(from, to) {
 }
 function showChanges() {
   for (const [path, slider] of S.sliders) slider.restore(S.changes[path] ?? slider.file);
+  note("");
   solve();
   paint();
 }

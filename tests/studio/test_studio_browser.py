@@ -224,7 +224,10 @@ def test_saving_asks_before_it_replaces(studio):
             page.locator("#save-note").filter(has_text="Replace best.yaml?").wait_for()
             page.locator("#save-yes", has_text="Replace").click()
         page.locator("#save-dialog").wait_for(state="hidden")
-        page.locator("#note").filter(has_text="Saved best.yaml").wait_for()
+        notice = page.locator("header #note").filter(has_text="Saved best.yaml")
+        notice.wait_for()
+        notice.get_by_role("button").click()
+        notice.wait_for(state="hidden")
     evaluation = ao.evaluate(studio.folder / "best.yaml")
     assert 1000 * evaluation.metrics["mass"].value == pytest.approx(mass, abs=0.06)
     assert evaluation.met
