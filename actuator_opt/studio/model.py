@@ -168,8 +168,13 @@ class Studio:
             "cycles": [x.name for x in design.duty.cycles] if design.duty is not None else [],
             "numbers": [row for row in rows if row is not None],
             "dimensions": [
-                {"path": row.path, "label": quick.label_of(row.path), "low": row.lower, "high": row.upper}
-                | scale_of(quantity_of(row.path, design))
+                {
+                    "path": row.path,
+                    "label": quick.label_of(row.path),
+                    "low": row.lower,
+                    "high": row.upper,
+                    **scale_of(quantity_of(row.path, design)),
+                }
                 for row in optimum.variables
             ],
             "best": [

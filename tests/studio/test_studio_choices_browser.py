@@ -170,7 +170,8 @@ def test_the_duty_cycle_runs(browser, tmp_path):
         assert re.search(r"J from the supply.*Efficiency", page.locator("#sources").text_content())
         told_at_once = page.evaluate(
             """() => { document.getElementById("cycle").dispatchEvent(new Event("change"));
-              return ["told", "sinks", "sources"].map((id) => document.getElementById(id).textContent); }"""
+              const ids = ["told", "sinks", "sources"];
+              return ids.map((id) => document.getElementById(id).textContent); }"""
         )
         assert told_at_once == ["The run is being calculated …", "", ""]
         told.filter(has_text="force reserve").wait_for(timeout=60_000)
