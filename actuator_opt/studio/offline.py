@@ -282,7 +282,6 @@ class _RecordedDesign:
             found = [*(problem.rows[k] for k in rows), *(problem.fixed[k] for k in fixed)]
             yield {
                 "name": term_of(limit.metric),
-                "path": f"requirements.{limit.metric}.{limit.sense}",
                 "sense": limit.sense,
                 "rows": [k + 1 for k in rows],
                 "fixed": fixed,

@@ -86,21 +86,15 @@ function coordinates(size, from = DATA.section.origin) {
   for (const [row, k, slope] of slopes) numbers[row] += slope * (size(k) - (from ? from[k] : 0));
   return numbers;
 }
-// Every limit with its least margin and the value of its metric there.
-function measured(point, { limits, fixed }) {
-  return DATA.limits.map((limit, k) => {
-    const size = limit.size && limits[k] === 0 ? limit.size : Math.abs(limits[k]) || 1;
-    const margins = [...limit.rows.map((row) => point.rows[row]), ...limit.fixed.map((row) => fixed[row])], margin = Math.min(...margins);
-    return { margin, where: limit.where[margins.indexOf(margin)], value: limits[k] + (limit.sense === "min" ? 1 : -1) * size * margin };
-  });
-}
-function held(point, { limits }, found) {
+function held(point, { limits, fixed }) {
   const rows = [], text = (scale, si) => withUnit(grouped(trimmed(shown(scale, si), 4)), scale.unit);
   DATA.limits.forEach((limit, k) => {
-    const { margin, value, where } = found[k], missed = margin < -MET;
+    const size = limit.size && limits[k] === 0 ? limit.size : Math.abs(limits[k]) || 1;
+    const margins = [...limit.rows.map((row) => point.rows[row]), ...limit.fixed.map((row) => fixed[row])];
+    const margin = Math.min(...margins), missed = margin < -MET;
     if (!(limit.rows.length ? margin <= ACTIVE : missed)) return;
     rows.push({ name: limit.name, limit: `${limit.sense === "min" ? "≥" : "≤"} ${text(limit, limits[k])}`, missed,
-      value: text(limit, value), where });
+      value: text(limit, limits[k] + (limit.sense === "min" ? 1 : -1) * size * margin), where: limit.where[margins.indexOf(margin)] });
   });
   rows.sort((a, b) => b.missed - a.missed);
   PROBLEM.free.forEach((k, j) => {
@@ -111,11 +105,10 @@ function held(point, { limits }, found) {
 }
 function design(best) {
   const point = best.point || best.least || PROBLEM.at(VALLEYS[0].z, best.numbers), drawn = parts(point.inputs);
-  const found = measured(point, drawn), unmet = drawn.fixed.some((margin, k) => DATA.fixed[k] && margin < -MET), feasible = Boolean(best.point) && !unmet;
-  const masses = DATA.masses.map((part, k) => ({ part, mass: drawn.masses[k] })), holds = held(point, drawn, found);
+  const unmet = drawn.fixed.some((margin, k) => DATA.fixed[k] && margin < -MET), feasible = Boolean(best.point) && !unmet;
+  const masses = DATA.masses.map((part, k) => ({ part, mass: drawn.masses[k] })), holds = held(point, drawn);
   return {
     feasible, holds, masses, whole: true,
-    reached: Object.fromEntries(DATA.limits.map((limit, k) => [limit.path, found[k].value]).filter(([, value]) => Number.isFinite(value))),
     sentence: feasible ? "" : sentence(best, holds),
     objective: Number.isFinite(point.objective) ? shownValue(point.objective) : null,
     within: feasible && !best.optimum ? promised(PROBLEM, best.descent) : null,

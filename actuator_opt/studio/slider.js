@@ -120,7 +120,7 @@ class Slider {
         const next = (slope, more) => `${slope === null ? "none found" : per(more ? slope : -slope)} with one ${more ? "more" : "fewer"}`;
         strong.textContent = nothing ? "no effect now" : `${goal.unit || goal.label}: ${next(price.up, true)}, ${next(price.down, false)}`;
       } else if (price.up === null && price.down === null) strong.textContent = "no design if it changes";
-      else if (nothing) strong.textContent = slack ? `costs nothing ${row.sense === "≤" ? "above" : "below"} ${this.text(now, 3)}${trimmed(now, 3) === trimmed(now, 4) ? "" : ` (now ${this.text(now, 4)})`}` : "no effect now";
+      else if (nothing) strong.textContent = slack ? `costs nothing ${row.sense === "≤" ? "above" : "below"} ${this.text(now, 3)}${trimmed(now, 3) === trimmed(now, 4) ? "" : ` (now ${this.text(now, 4)})`}` : row.sense ? "costs nothing" : "no effect now";
       else if (price.up === price.down || Math.abs(price.up - price.down) < 1e-6 * Math.abs(price.up)) strong.textContent = `${per(price.up)} ${unit}`;
       else strong.textContent = `${price.up === null ? "no design" : per(price.up)} more, ${price.down === null ? "no design" : per(price.down)} less, ${unit}`;
       const held = low !== null && high !== null ? `from about ${digits(low)} to ${this.text(high, 3)}` : low !== null ? `from about ${this.text(low, 3)} up` : high !== null ? `up to about ${this.text(high, 3)}` : "";
@@ -132,6 +132,7 @@ class Slider {
     if (edges.high !== null) words.push(`${words.length ? "; " : ""}none found at ${this.text(edges.high, 4)} or more`);
     this.price.replaceChildren(...words);
     this.price.classList.toggle("old", Boolean(old));
+    this.box.classList.toggle("old", Boolean(old));
     this.speak();
   }
   // The track: where the price holds, what was solved ahead with its curve, where nothing was found.
