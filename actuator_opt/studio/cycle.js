@@ -125,9 +125,12 @@ function clearCycle() {
   byId("position").removeAttribute("aria-valuetext");
   byId("told").textContent = "The run is being calculated …";
 }
+const keyOfRun = () => JSON.stringify([byId("cycle").value, keyOf(S.changes)]);
+// Say whether the run is that of an earlier design; while nothing fits, it stays.
+function ageCycle() { byId("duty").classList.toggle("old", Boolean(C.data) && C.key !== keyOfRun() && S.shown.feasible); }
 // Ask for the chosen cycle of the design that is shown, unless it is here already.
 async function fetchCycle(changes, stale) {
-  const name = byId("cycle").value, key = JSON.stringify([name, keyOf(S.changes)]);
+  const name = byId("cycle").value, key = keyOfRun();
   if (byId("duty").hidden || !byId("duty").open || C.key === key) return true;
   const data = await ask("cycle", { changes, name });
   if (stale() || name !== byId("cycle").value) return false;
@@ -140,6 +143,7 @@ async function fetchCycle(changes, stale) {
   C.data = data;
   if (other) showStrips(data);
   if (other) C.sample = data.reserve.sample;
+  ageCycle();
   paintCycle();
   return true;
 }
@@ -160,7 +164,7 @@ function offerCycles(names) {
   clearCycle();
   byId("cycle").replaceChildren(...names.map((name) => node("option", { value: name, textContent: name })));
 }
-PARTS.push({ described: (design) => offerCycles(design.cycles ?? []), rest: fetchCycle });
+PARTS.push({ described: (design) => offerCycles(design.cycles ?? []), painted: ageCycle, rest: fetchCycle });
 byId("cycle").addEventListener("change", () => { clearCycle(); settle(); });
 byId("duty").addEventListener("toggle", () => { if (byId("duty").open) { paintCycle(); if (S.shown) settle(); } else stopPlaying(); });
 for (const id of ["shown-1", "shown-2"]) byId(id).addEventListener("change", paintCycle);
