@@ -115,18 +115,35 @@ function stopPlaying() {
   byId("play").textContent = "Play";
   if (C.data) place(C.sample);
 }
+// Nothing of another cycle stays while a run is under way.
+function clearCycle() {
+  stopPlaying();
+  Object.assign(C, { data: null, key: "", markers: [], sample: 0 });
+  for (const id of ["trace-1", "trace-2", "plane-1", "plane-2", "energy", "sinks"]) byId(id).replaceChildren();
+  for (const id of ["least-text", "plane-note", "sources"]) byId(id).textContent = "";
+  for (const id of ["trace-1", "trace-2", "plane-1", "plane-2", "energy"]) byId(id).setAttribute("aria-label", "No cycle yet");
+  byId("position").removeAttribute("aria-valuetext");
+  byId("told").textContent = "The run is being calculated …";
+}
+const keyOfRun = () => JSON.stringify([byId("cycle").value, keyOf(S.changes)]);
+// Say whether the run is that of an earlier design; while nothing fits, it stays.
+function ageCycle() { byId("duty").classList.toggle("old", Boolean(C.data) && C.key !== keyOfRun() && S.shown.feasible); }
 // Ask for the chosen cycle of the design that is shown, unless it is here already.
 async function fetchCycle(changes, stale) {
-  const name = byId("cycle").value, key = JSON.stringify([name, keyOf(S.changes)]);
+  const name = byId("cycle").value, key = keyOfRun();
   if (byId("duty").hidden || !byId("duty").open || C.key === key) return true;
   const data = await ask("cycle", { changes, name });
   if (stale() || name !== byId("cycle").value) return false;
-  if (data.dropped || data.infeasible) return true;
+  if (data.dropped || data.infeasible) {
+    if (data.infeasible && !C.data) byId("told").textContent = "No run: nothing fits.";
+    return true;
+  }
   const other = !C.data || C.data.name !== name;
   C.key = key;
   C.data = data;
   if (other) showStrips(data);
   if (other) C.sample = data.reserve.sample;
+  ageCycle();
   paintCycle();
   return true;
 }
@@ -144,10 +161,11 @@ function showStrips(data) {
 function offerCycles(names) {
   byId("duty").hidden = !names.length;
   if (byId("cycle").options.length) return;
+  clearCycle();
   byId("cycle").replaceChildren(...names.map((name) => node("option", { value: name, textContent: name })));
 }
-PARTS.push({ described: (design) => offerCycles(design.cycles ?? []), rest: fetchCycle });
-byId("cycle").addEventListener("change", settle);
+PARTS.push({ described: (design) => offerCycles(design.cycles ?? []), painted: ageCycle, rest: fetchCycle });
+byId("cycle").addEventListener("change", () => { clearCycle(); settle(); });
 byId("duty").addEventListener("toggle", () => { if (byId("duty").open) { paintCycle(); if (S.shown) settle(); } else stopPlaying(); });
 for (const id of ["shown-1", "shown-2"]) byId(id).addEventListener("change", paintCycle);
 byId("position").addEventListener("input", () => { if (C.playing) stopPlaying(); if (C.data) place(byId("position").valueAsNumber); });

@@ -12,15 +12,18 @@ function paint() {
   document.body.classList.toggle("about", !searching && !current && !(forecast && forecast.section));
   const objective = forecast ? forecast.objective : design.objective;
   const nothing = current && !truthNow.feasible, near = current && typeof design.within === "number";
+  // Beyond a value that reached no design, and after a wish that nothing fits, no mass is shown before it is known.
+  const lost = !current && !forecast && (!truthNow.feasible || S.searching || beyond());
   const within = near ? `, within ${withUnit(trimmed(design.within * S.goal.factor, 2), S.goal.unit)}` : "";
-  byId("objective").textContent = searching ? "no design found yet, searching …" : nothing ? "nothing fits" : objective === null ? "no objective" : `${objectiveText(objective, forecast || near)}${within}${current || forecast ? "" : " …"}`;
+  byId("objective").textContent = searching ? "no design found yet, searching …" : nothing ? "nothing fits" : objective === null ? "no objective" : lost ? "updating …" : `${objectiveText(objective, forecast || near)}${within}${current || forecast ? "" : ", updating …"}`;
   byId("objective").className = current && !near ? "" : "about";
   const pinned = S.A && S.A.shown;
   byId("against").textContent = pinned && !nothing && objective !== null && (current || forecast) ? `A ${objectiveText(pinned.objective)}, ${signed((objective - pinned.objective) * S.goal.factor, 3)}` : "";
   drawSection(forecast && forecast.section ? forecast.section : design.section, pinned && pinned.section);
-  if (searching && S.good) byId("lengths").textContent = "The last design that fits is shown in grey.";
-  if (nothing) byId("lengths").textContent = S.good ? "The last design that fits is shown in grey." : "Nothing fits: the nearest miss is shown in grey.";
-  byId("card").hidden = !nothing;
+  if ((searching || nothing) && S.good) byId("lengths").textContent = `The last design that fits is shown in grey: ${lastGood()}.`;
+  else if (nothing) byId("lengths").textContent = "Nothing fits: the nearest miss is shown in grey.";
+  byId("nothing").hidden = !nothing;
+  if (design.advice) byId("advice").textContent = nothing || !design.advice.length ? "" : `advice not followed: ${design.advice.join(", ")}`;
   byId("card").textContent = nothing ? truthNow.card ?? `${truthNow.sentence}\nLooking for what would help …` : "";
   byId("disk").hidden = !truthNow.changed_on_disk;
   byId("disk").textContent = truthNow.changed_on_disk ? `${S.design.file} has changed on disk since it was opened. The studio goes on with what it read, and will not overwrite the file.` : "";
@@ -28,6 +31,15 @@ function paint() {
   paintPrices();
   paintButtons();
   for (const part of PARTS) part.painted?.();
+}
+// The last design that fits, and the wishes of it that differ from the present ones.
+function lastGood() {
+  const differ = [...new Set([...Object.keys(S.changes), ...Object.keys(S.goodFor)])].filter((path) => S.changes[path] !== S.goodFor[path]);
+  const words = differ.slice(0, 2).map((path) => {
+    const slider = S.sliders.get(path);
+    return slider ? `${slider.row.label} ${slider.text(S.goodFor[path] ?? slider.file, 4)}` : String(S.goodFor[path] ?? control(path).file);
+  });
+  return `${objectiveText(S.good.objective)}${words.length ? `, at ${words.join(" and ")}` : ""}`;
 }
 const EXTENT = { left: Infinity, right: -Infinity, radius: 0 };
 function drawSection(section, pinned) {
@@ -60,7 +72,7 @@ function paintMasses(design, pinned) {
   });
   rows.sort((a, b) => b.share - a.share);
   paintTable("masses", rows);
-  byId("masses").append(node("tr", {}, node("th", { scope: "row" }, node("strong", { textContent: "all" })), node("td"),
+  byId("masses").append(node("tr", {}, node("th", { scope: "row" }, node("strong", { textContent: "all" })), node("td", { className: "bar-cell" }),
     ...Object.entries(compared(scale, design.mass, pinned ? pinned.mass : undefined)).map(([key, text]) => node("td", { className: key === "now" ? "number" : "number a", textContent: text }))));
 }
 function paintDimensions(design, pinned) {
@@ -80,8 +92,12 @@ function paintPrices() {
   const goal = { ...S.goal, now: S.good ? S.good.objective : 1 };
   for (const [path, slider] of S.sliders) {
     const priced = S.priced && S.priced.prices.get(path), fits = priced && keyOf(S.priced.changes, path) === keyOf(S.changes, path);
-    const edges = slider.paint(fits ? priced : null, curveOf(path));
-    slider.tell(priced, goal, edges, priced && S.priced.key !== keyOf(S.changes));
+    // A price of another design is not the price of a wish that nothing fits.
+    const lost = S.searching === keyOf(S.changes) || !S.shown.feasible, old = Boolean(priced && !lost && S.priced.key !== keyOf(S.changes));
+    const curve = curveOf(path), kept = !curve.length && old ? S.curves.get(path)?.points ?? curve : curve;
+    const edges = slider.paint(fits || old ? priced : null, kept);
+    slider.track.classList.toggle("old", old && !fits);
+    slider.tell(lost ? null : priced, goal, edges, old, priced && S.priced.shown.reached?.[path]);
   }
   paintTrade();
 }
@@ -120,7 +136,7 @@ function announce() {
   byId("live").textContent = S.shown.feasible ? `${objectiveText(S.shown.objective)}, held by ${names.join(", ")}` : "Nothing fits.";
 }
 function note(text) {
-  byId("note").textContent = text;
+  byId("note-text").textContent = text;
   byId("note").hidden = !text;
 }
 
@@ -130,7 +146,6 @@ const ACTS = {
     change(slider.row.path, slider.value);
     slider.refuse("");
     if (S.touched.path !== slider.row.path) S.touched = { path: slider.row.path, key: false, time: 0 };
-    note("");
     solve();
     paint();
   },
@@ -193,6 +208,8 @@ addEventListener("keydown", (event) => {
   }
 });
 for (const [id, act] of Object.entries({ undo, redo, pin, swap, ...FILES.acts })) byId(id).addEventListener("click", act);
+byId("note-close").addEventListener("click", () => note(""));
+byId("skip").addEventListener("click", () => document.querySelector("#asked input[type=range]")?.focus());
 byId("help").addEventListener("click", () => byId("help-dialog").showModal());
 byId("help-close").addEventListener("click", () => byId("help-dialog").close());
 byId("across").addEventListener("change", () => { paintTrade(); settle(); });

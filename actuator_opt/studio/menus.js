@@ -11,7 +11,14 @@ class Menu {
     this.box = node("div", { className: "menu" }, this.label, this.select, this.told);
     this.box.dataset.path = path;
     this.select.setAttribute("aria-describedby", this.told.id);
-    this.select.addEventListener("change", () => acts.choose(this, this.valueOf(this.select.selectedIndex)));
+    // After a choice by mouse or Enter the keys belong to the page again; arrow keys and letters go on choosing.
+    let key = "";
+    this.select.addEventListener("pointerdown", () => { key = ""; });
+    this.select.addEventListener("keydown", (event) => { key = event.key; });
+    this.select.addEventListener("change", () => {
+      if (key === "" || key === "Enter") this.select.blur();
+      acts.choose(this, this.valueOf(this.select.selectedIndex));
+    });
   }
   // What the studio offers now; `row` is the number if the menu lists sizes, `file` the file's word.
   offer(menu, row) {
@@ -26,17 +33,17 @@ class Menu {
   }
   valueOf(index) {
     const option = this.menu.options[index];
-    return this.row && option ? exact(shown(this.row, option.size)) : this.select.value;
+    return !option ? this.value : this.row ? exact(shown(this.row, option.size)) : option.word;
   }
   show(value) {
     this.value = value;
     const index = this.menu.options.findIndex((one, k) => this.valueOf(k) === value || one.word === value);
+    this.select.querySelector(".own")?.remove();
     if (index < 0 && this.row) {
-      this.select.querySelector(".own")?.remove();
       this.select.append(node("option", { className: "own", textContent: `${withUnit(trimmed(value, 4), this.row.unit)}, no standard size` }));
     }
-    this.select.selectedIndex = index < 0 ? this.select.options.length - 1 : index;
-    this.select.title = this.menu.options[index]?.help ?? "";
+    this.select.selectedIndex = index < 0 && this.row ? this.menu.options.length : index;
+    this.select.title = [this.select.selectedOptions[0]?.textContent, this.menu.options[index]?.help].filter(Boolean).join(": ");
     this.box.classList.toggle("changed", value !== this.file);
   }
   wish(value) { return this.row ? withUnit(String(value), this.row.typed) : value; }
@@ -55,12 +62,14 @@ const CHOICES = {
     const { path } = menu, wish = menu.wish(value);
     byId("main").setAttribute("aria-busy", "true");
     menu.tell("searching …");
+    CHOICES.pending = menu;
     try {
       let data;
       do {
         if (data) await pause(CALM);  // a slider was moved meanwhile
         data = await ask("solve", { changes: { ...wishes(S.changes), [path]: wish }, describe: true });
       } while (data.dropped);
+      CHOICES.pending = null;
       menu.tell("");
       const before = S.shown.feasible && S.shownFor === keyOf(S.changes) ? S.shown.objective : null;
       change(path, value);
@@ -69,6 +78,7 @@ const CHOICES = {
       CHOICES.compared = { menu, key: keyOf(S.changes), objective: before };
       truth(data, S.changes);
     } catch (fault) {
+      CHOICES.pending = null;
       if (!(fault instanceof Unfit)) throw fault;
       menu.tell(fault.message.replace(`${path}: `, ""), true);
       menu.show(S.changes[path] ?? menu.file);
@@ -76,6 +86,7 @@ const CHOICES = {
     }
   },
   compared: null,
+  pending: null,  // the menu whose choice is not part of the state yet
   // Menus of the present words; those without meaning are kept for undo, but hidden.
   offer(design) {
     const rows = new Map(design.numbers.map((row) => [row.path, row])), groups = new Map();
@@ -99,7 +110,7 @@ const CHOICES = {
     if (across.selectedOptions[0]?.disabled) across.value = [...across.options].find((one) => !one.disabled).value;
   },
   show() {
-    for (const [path, menu] of S.menus) menu.show(S.changes[path] ?? menu.file);
+    for (const [path, menu] of S.menus) if (menu !== CHOICES.pending) menu.show(S.changes[path] ?? menu.file);
   },
   // What the last choice changed; said once its optimum is painted.
   tell() {
@@ -113,7 +124,7 @@ const CHOICES = {
     compared.menu.tell(`${objectiveText(objective)}${step}${searched ? "" : "; searching for a better one …"}`);
   },
 };
-PARTS.push({ described(design) { CHOICES.offer(design); CHOICES.show(); }, shown: CHOICES.show, painted: CHOICES.tell });
+PARTS.push({ described(design) { CHOICES.offer(design); CHOICES.show(); }, painted() { CHOICES.show(); CHOICES.tell(); } });
 function difference(now, before) {
   const step = (now - before) * S.goal.factor;
   return Math.abs(step) < 1e-5 * Math.abs(S.goal.factor * before) ? "no change" : `${signed(step, 3)}${S.goal.unit ? ` ${S.goal.unit}` : ""}`;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
@@ -16,8 +17,8 @@ from ..base.arguments import Change
 from ..base.errors import Diagnostic, InputError, UsageError
 from ..base.progress import watched
 from ..base.quantities import Quantity
-from ..design import get, quantity_of
-from ..design.paths import numbers, words_of
+from ..design import Design, get, quantity_of
+from ..design.paths import numbers
 from ..design.writer import exact_text
 from ..evaluation import Evaluation
 from ..evaluation.result import Check, Requirement
@@ -167,8 +168,13 @@ class Studio:
             "cycles": [x.name for x in design.duty.cycles] if design.duty is not None else [],
             "numbers": [row for row in rows if row is not None],
             "dimensions": [
-                {"path": row.path, "label": words_of(row.path), "low": row.lower, "high": row.upper}
-                | scale_of(quantity_of(row.path, design))
+                {
+                    "path": row.path,
+                    "label": quick.label_of(row.path),
+                    "low": row.lower,
+                    "high": row.upper,
+                    **scale_of(quantity_of(row.path, design)),
+                }
                 for row in optimum.variables
             ],
             "best": [
@@ -188,7 +194,7 @@ class Studio:
         quantity = quantity_of(path, self.actuator.design)
         if not math.isfinite(value):
             return None
-        label, sense = words_of(path), ""
+        label, sense = quick.label_of(path), ""
         if path.startswith("requirements."):
             sense = "≥" if path.endswith(".min") else "≤"
         elif path.startswith("load_cases["):
@@ -334,10 +340,11 @@ class Studio:
     def _card(self, result: Optimisation, changed: Mapping[str, float]) -> str:
         """The text of the terminal if nothing fits: the nearest miss, and changes that help."""
         again = shlex.join([*self._words, *self._settings(changed)])
-        return results.card(
+        card = results.card(
             result, {"again": again, "written": False},
             colour=False, unicode=True, width=CARD_WIDTH,
         )  # fmt: skip
+        return _for_a_page(card, self.actuator.design)
 
     def _shown(self, result: Optimisation) -> dict[str, Any]:
         """Data of an optimum, or of a nearest miss, that the page shows."""
@@ -354,6 +361,7 @@ class Studio:
             ],
             "mass": evaluation.metrics["mass"].value,
             "holds": _held(evaluation, result),
+            "advice": _not_followed(evaluation),
             "reached": {
                 f"requirements.{row.metric}.{row.sense}": row.value
                 for row in evaluation.requirements
@@ -639,6 +647,37 @@ def plain_words(change: str | None) -> str | None:
     return None if change is None else text.pretty(change.replace("_", " "))
 
 
+def _for_a_page(card: str, design: Design) -> str:
+    """A card of the terminal without what only a terminal has; numbers by their labels."""
+    card = re.split(r"\n(?:care|next): ", card)[0].rstrip()
+    card = re.sub(r";\s+-v\s+shows\s+the\s+search|,\s+see\s+--relax-safety", "", card)
+    known = {*numbers(design), *design.variables}
+
+    def named(match: re.Match[str]) -> str:
+        path = match[0]
+        try:
+            if path not in known and get(design, path) is None:
+                return path
+        except InputError:
+            return path
+        label = quick.label_of(path)
+        in_table = re.match(r" *\d+ ", card[card.rfind("\n", 0, match.start()) + 1 :])
+        return label.ljust(len(path)) if in_table else label
+
+    return re.sub(r"[a-z]\w*(?:\[\w+\])?(?:\.[a-z]\w*(?:\[\w+\])?)+", named, card)
+
+
+def _not_followed(evaluation: Evaluation) -> list[str]:
+    """Advice that the design does not follow: name, value and limit."""
+    return [
+        f"{term_of(row.metric)} {text.value_text(quantity, row.value)} "
+        f"({text.limit_text(quantity, row.sense, row.limit)})"
+        for row in evaluation.checks
+        if row.advice and row.status == "missed" and row.metric and row.value is not None
+        for quantity in [text.metric(row.metric)]
+    ]
+
+
 def _held(evaluation: Evaluation, result: Optimisation) -> list[dict[str, Any]]:
     """Missed limits, then limits and bounds that are active at the optimum."""
     active = () if result.kkt is None else result.kkt.active
@@ -667,7 +706,7 @@ def _held(evaluation: Evaluation, result: Optimisation) -> list[dict[str, Any]]:
     design = evaluation.design
     return rows + [
         {
-            "name": words_of(row.path),
+            "name": quick.label_of(row.path),
             "limit": f"{row.at_bound} bound",
             "value": quantity_of(row.path, design).text(row.value),
             "where": "",

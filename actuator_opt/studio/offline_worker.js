@@ -87,7 +87,7 @@ function coordinates(size, from = DATA.section.origin) {
   return numbers;
 }
 function held(point, { limits, fixed }) {
-  const rows = [], text = (scale, si) => withUnit(trimmed(shown(scale, si), 4), scale.unit);
+  const rows = [], text = (scale, si) => withUnit(grouped(trimmed(shown(scale, si), 4)), scale.unit);
   DATA.limits.forEach((limit, k) => {
     const size = limit.size && limits[k] === 0 ? limit.size : Math.abs(limits[k]) || 1;
     const margins = [...limit.rows.map((row) => point.rows[row]), ...limit.fixed.map((row) => fixed[row])];
@@ -122,7 +122,7 @@ function sentence(best, holds) {
   const missed = holds.filter((row) => row.missed).map((row) => `  ${row.name} ${row.value}, asked ${row.limit}`);
   const why = best.known ? "No design was found near the known ones." : "This page cannot calculate such designs: its models were recorded for others.";
   return [why, ...(missed.length ? ["Nearest miss:", ...missed] : []), "This page searches only near the optima that it was made with.",
-    "“Copy command” gives the command of a full search, which also says what would help."].join("\n");
+    "“Command …” gives the command of a full search, which also says what would help."].join("\n");
 }
 
 // ---- requests ----

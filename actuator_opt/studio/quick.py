@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -35,6 +36,19 @@ def shown(bare: BareOptimum) -> dict[str, Any]:
         "holds": [*_limits(bare), *_bounds(bare)],
         "dimensions": dict(bare.variables),
     }
+
+
+def label_of(path: str) -> str:
+    """The value that a PATH names, in the words of the page's menus.
+
+    >>> label_of("barrel.layup[0].angle"), label_of("rod.wall[1].thickness")
+    ('barrel, layer 1, angle', 'rod, layer 2, thickness')
+    """
+    layer = re.fullmatch(r"(.+)\.(?:layup|wall)\[(\d+)\]\.(\w+)", path)
+    if layer is None:
+        return words_of(path)
+    part, number, key = layer.groups()
+    return f"{part}, layer {int(number) + 1}, {key}".replace("_", " ").replace(".", " ")
 
 
 def _masses(subject: PreparedDesign) -> Mapping[str, float]:
@@ -76,7 +90,7 @@ def _bounds(bare: BareOptimum) -> list[dict[str, Any]]:
         if side is not None:
             quantity = quantity_of(path, bare.subject.design)
             found.append(
-                {"name": words_of(path), "limit": f"{side} bound", "value": quantity.text(value),
+                {"name": label_of(path), "limit": f"{side} bound", "value": quantity.text(value),
                  "where": "", "missed": False}
             )  # fmt: skip
     return found

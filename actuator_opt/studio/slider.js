@@ -8,7 +8,7 @@ class Slider {
     this.row = row;
     this.acts = acts;
     this.value = exact(shown(row, row.value));
-    this.file = this.value;
+    this.file = this.fits = this.value;
     const id = `n${Slider.count++}`;
     this.field = node("input", { type: "text", id, autocomplete: "off", spellcheck: false });
     this.range = node("input", { type: "range", step: "any" });
@@ -26,10 +26,11 @@ class Slider {
     this.listen();
     this.show(this.value);
   }
-  // Let the range reach a quarter of the number's size below and above a value.
+  room(value) { return this.row.whole ? NEIGHBOURS : SHARE * (Math.abs(value) || this.row.size); }
+  // Let the range reach a quarter of the number's size below and above a value, and the last value that fits.
   centre(value) {
-    const { row } = this, room = row.whole ? NEIGHBOURS : SHARE * (Math.abs(value) || row.size);
-    const ends = [value - room, value + room], limits = [row.lower, row.upper].map((si) => (si === null ? null : shown(row, si)));
+    const { row } = this, room = this.room(value);
+    const ends = [Math.min(value - room, this.fits), Math.max(value + room, this.fits)], limits = [row.lower, row.upper].map((si) => (si === null ? null : shown(row, si)));
     this.low = limits[0] === null ? ends[0] : Math.max(ends[0], limits[0]);
     this.high = limits[1] === null ? ends[1] : Math.min(ends[1], limits[1]);
     this.step = row.whole ? 1 : roundStep((this.high - this.low) / STEPS);
@@ -55,6 +56,16 @@ class Slider {
     });
     this.field.addEventListener("change", () => this.acts.typed(this, this.field.value.trim()));
     this.field.addEventListener("keydown", (event) => { if (event.key === "Escape") { this.refuse(""); this.show(this.value); } });
+  }
+  // Show a value of the past; a range that a far wish has widened or moved is as at first.
+  restore(value) {
+    const room = this.room(value);
+    this.refuse("");
+    if (this.high - this.low > 4 * room || value - this.low < room / 2 || this.high - value < room / 2) {
+      this.fits = value;
+      this.centre(value);
+    }
+    this.show(value);
   }
   show(value) {
     this.value = value;
@@ -90,33 +101,38 @@ class Slider {
     if (this.row.whole) return Array.from({ length: this.high - this.low + 1 }, (_, k) => this.low + k);
     return Array.from({ length: AHEAD + 1 }, (_, k) => exact(this.low + (this.high - this.low) * k / AHEAD));
   }
-  // The price in words; `price` in SI, `edges` where no design was found.
-  tell(price, goal, edges, old) {
+  // The price in words; `price` in SI, `edges` where no design was found, `reached` the metric of a limit.
+  tell(price, goal, edges, old, reached) {
     const words = [], { row } = this;
     // Small numbers get their price per 0.1, 0.01, … of the unit, about a fifth of the number.
     const size = Math.abs(this.value) || row.size, share = row.whole ? 1 : size < 2 ? exact(10 ** Math.floor(Math.log10(size / 5))) : 1;
     const small = (slope) => Math.abs(slope * row.size / row.factor) < 1e-4 * Math.abs(goal.now), nothing = price && small(price.up) && small(price.down);
-    if (this.same("told", price, old, edges.low, edges.high, share, nothing)) return;
+    if (this.same("told", price, old, edges.low, edges.high, share, nothing, reached)) return;
     if (price) {
       const per = (slope) => signed(share * slope * goal.factor / row.factor, 3);
-      const unit = withUnit(goal.unit || goal.label, `per ${share === 1 && row.unit ? row.unit : withUnit(String(share), row.unit)}`);
+      const unit = withUnit(goal.unit || goal.label, `per ${share === 1 && row.unit ? row.unit : share === 1e-3 && row.unit === "mm" ? "µm" : withUnit(String(share), row.unit)}`);
       const strong = node("strong");
+      const now = reached === undefined || reached === null ? null : exact(shown(row, reached));
+      const slack = now !== null && (row.sense === "≤" ? now < this.value : row.sense === "≥" && now > this.value);
       const inside = (si) => si !== null && (row.lower === null || si > row.lower) && (row.upper === null || si < row.upper);
       const [low, high] = [price.low, price.high].map((si) => (inside(si) ? exact(shown(row, si)) : null)), digits = (v) => trimmed(v, 3);
       if (row.whole) {
         const next = (slope, more) => `${slope === null ? "none found" : per(more ? slope : -slope)} with one ${more ? "more" : "fewer"}`;
-        strong.textContent = nothing ? "costs nothing" : `${goal.unit || goal.label}: ${next(price.up, true)}, ${next(price.down, false)}`;
+        strong.textContent = nothing ? "no effect now" : `${goal.unit || goal.label}: ${next(price.up, true)}, ${next(price.down, false)}`;
       } else if (price.up === null && price.down === null) strong.textContent = "no design if it changes";
-      else if (nothing) strong.textContent = "costs nothing";
+      else if (nothing) strong.textContent = slack ? `costs nothing ${row.sense === "≤" ? "above" : "below"} ${this.text(now, 3)}${trimmed(now, 3) === trimmed(now, 4) ? "" : ` (now ${this.text(now, 4)})`}` : row.sense ? "costs nothing" : "no effect now";
       else if (price.up === price.down || Math.abs(price.up - price.down) < 1e-6 * Math.abs(price.up)) strong.textContent = `${per(price.up)} ${unit}`;
       else strong.textContent = `${price.up === null ? "no design" : per(price.up)} more, ${price.down === null ? "no design" : per(price.down)} less, ${unit}`;
-      words.push(strong, row.whole ? "" : low !== null && high !== null ? `, holds from ${digits(low)} to ${digits(high)}` : low !== null ? `, holds from ${digits(low)} up` : high !== null ? `, holds up to ${digits(high)}` : ", holds throughout");
+      const held = low !== null && high !== null ? `from about ${digits(low)} to ${this.text(high, 3)}` : low !== null ? `from about ${this.text(low, 3)} up` : high !== null ? `up to about ${this.text(high, 3)}` : "";
+      const alone = price.up === null && price.down === null;
+      words.push(strong, row.whole || nothing || alone ? "" : held ? ` here; the same limits hold ${held}` : " in the whole range");
       this.price.title = row.whole ? "" : [low !== null && `below ${this.text(low, 3)}: ${price.below}`, high !== null && `above ${this.text(high, 3)}: ${price.above}`].filter(Boolean).join("\n");
     } else this.price.title = "";
     if (edges.low !== null) words.push(`${words.length ? "; " : ""}none found at ${this.text(edges.low, 4)} or less`);
     if (edges.high !== null) words.push(`${words.length ? "; " : ""}none found at ${this.text(edges.high, 4)} or more`);
     this.price.replaceChildren(...words);
     this.price.classList.toggle("old", Boolean(old));
+    this.box.classList.toggle("old", Boolean(old));
     this.speak();
   }
   // The track: where the price holds, what was solved ahead with its curve, where nothing was found.

@@ -3,7 +3,7 @@
 const PATIENCE = 400, CALM = 250, MOST_UNDO = 200, CHUNK = 5, MERGE = 800;
 const S = {
   design: null, goal: null, sliders: new Map(), menus: new Map(), describedFor: "", changes: {}, committed: {}, past: [], future: [],
-  shown: null, shownFor: "", searching: "", good: null, A: null, priced: null, curves: new Map(), focused: "", touched: { path: "", key: false, time: 0 },
+  shown: null, shownFor: "", searching: "", good: null, goodFor: {}, lost: {}, A: null, priced: null, curves: new Map(), focused: "", touched: { path: "", key: false, time: 0 },
 };
 
 const keyOf = (changes, without) => JSON.stringify(Object.keys(changes).filter((path) => path !== without).sort().map((path) => [path, changes[path]]));
@@ -17,6 +17,7 @@ function change(path, value) {
   if (value === control(path).file) delete next[path];
   else next[path] = value;
   S.changes = next;
+  note("");
 }
 
 // ---- one request under way; the newest wish waits, or replaces a slow one ----
@@ -58,7 +59,11 @@ function truth(data, changes) {
   S.searching = "";
   S.shown = data;
   S.shownFor = keyOf(changes);
-  if (data.feasible) S.good = data;
+  if (data.feasible) {
+    S.good = data;
+    S.goodFor = changes;
+    for (const [path, slider] of S.sliders) slider.fits = changes[path] ?? slider.file;
+  } else S.lost = changes;
   paint();
   if (S.shownFor === keyOf(S.changes)) {
     byId("main").setAttribute("aria-busy", "false");
@@ -70,6 +75,7 @@ function truth(data, changes) {
 async function search(changes) {
   const serial = LINE.latest;
   S.searching = keyOf(changes);
+  S.lost = changes;
   paint();
   let data = { dropped: true };
   try { data = await ask("solve", { changes: wishes(changes), whole: true }); } catch (fault) { if (!(fault instanceof Unfit)) throw fault; }
@@ -88,23 +94,34 @@ function predicted() {
   const [path] = different, slider = S.sliders.get(path), price = S.priced.prices.get(path);
   if (!slider) return null;  // a word has no price
   const si = (slider.value - slider.row.offset) / slider.row.factor;
-  if (price && (price.low === null || si >= price.low) && (price.high === null || si <= price.high)) {
+  if (price && !beyond() && (price.low === null || si >= price.low) && (price.high === null || si <= price.high)) {
     const step = si - price.value, slope = step > 0 ? price.up : price.down, { section, objective } = S.priced.shown;
     if (slope !== null) return {
       objective: objective + slope * step,
       section: price.section && { ...section, numbers: section.numbers.map((one, k) => one + step * price.section[k]) },
     };
   }
+  if (beyond()) return null;
   const points = curveOf(path), k = points.findIndex((one) => one.x >= slider.value);
   if (k < 1 || points[k].y === null || points[k - 1].y === null) return null;
   const [from, to] = [points[k - 1], points[k]], share = (slider.value - from.x) / (to.x - from.x);
   return { objective: from.y + share * (to.y - from.y), section: null };
 }
 
+// Whether the wish is as far from the last design that fits as a value that is known to have none.
+function beyond() {
+  const { path } = S.touched, slider = S.sliders.get(path);
+  if (!slider) return false;
+  const from = S.goodFor[path] ?? slider.file, to = slider.value;
+  const gaps = curveOf(path).filter((one) => one.y === null).map((one) => one.x);
+  if ((S.searching || !S.shown.feasible) && path in S.lost) gaps.push(S.lost[path]);
+  return gaps.some((gap) => gap !== from && (gap - from) * (to - gap) >= 0);
+}
+
 // ---- at rest: prices, the card if nothing fits, curves nearest first ----
 const UNKNOWN = { points: [], budget: null, none: false };
 const REST = { timer: 0, ranked: new Map(), done: false };
-// Parts that not every page has, each with some of these: described(design), shown(), painted(), and
+// Parts that not every page has, each with some of these: described(design), painted(), and
 // rest(changes, stale), which asks for more at rest and returns false if it has to ask again.
 const PARTS = [];
 
@@ -240,8 +257,8 @@ function travel(from, to) {
   showChanges();
 }
 function showChanges() {
-  for (const [path, slider] of S.sliders) { slider.refuse(""); slider.show(S.changes[path] ?? slider.file); }
-  for (const part of PARTS) part.shown?.();
+  for (const [path, slider] of S.sliders) slider.restore(S.changes[path] ?? slider.file);
+  note("");
   solve();
   paint();
 }

@@ -89,8 +89,16 @@ def test_it_opens_with_the_optimum_and_hides_its_key(studio):
     assert studio.page.locator("#section path").count() > 10
     studio.page.locator(f'.wish[data-path="{STIFFNESS}"] .price strong').wait_for()
     studio.page.locator("#fixed .wish").first.wait_for(timeout=60_000)
+    prices = studio.page.locator("#asked .price").all_text_contents()
+    assert any(" g per kN/mm here; the same limits hold from about " in x for x in prices)
+    found = (re.fullmatch(r"costs nothing above (\S+) N \(now (\S+) N\)", x) for x in prices)
+    ((edge, now),) = (map(float, x.groups()) for x in found if x)
+    assert edge == pytest.approx(now, rel=5e-3)
     studio.page.reload()  # the tab keeps its key
     assert studio.mass == pytest.approx(1000 * best, abs=0.06)
+    studio.page.keyboard.press("Tab")
+    studio.page.keyboard.press("Enter")
+    assert studio.page.evaluate("document.activeElement.closest('#asked') !== null")
 
 
 def test_keys_forecast_and_truth(studio):
@@ -196,7 +204,9 @@ def test_what_nothing_reaches_is_searched_for(studio):
     studio.field().press("Enter")
     page.locator("#objective").filter(has_text="no design found yet, searching").wait_for()
     assert page.locator("body.stale").count() == 1
-    assert "shown in grey" in studio.text("lengths")
+    assert re.search(r"shown in grey: [\d.]+ g, at stiffness 9.2 kN/mm", studio.text("lengths"))
+    assert float(studio.slider().get_attribute("min")) <= 9.2
+    assert page.locator("#asked .price strong").count() == 0
     page.keyboard.press("Escape")
     studio.slider().focus()
     page.keyboard.press("Control+z")
@@ -215,7 +225,10 @@ def test_saving_asks_before_it_replaces(studio):
             page.locator("#save-note").filter(has_text="Replace best.yaml?").wait_for()
             page.locator("#save-yes", has_text="Replace").click()
         page.locator("#save-dialog").wait_for(state="hidden")
-        page.locator("#note").filter(has_text="Saved best.yaml").wait_for()
+        notice = page.locator("header #note").filter(has_text="Saved best.yaml")
+        notice.wait_for()
+        notice.get_by_role("button").click()
+        notice.wait_for(state="hidden")
     evaluation = ao.evaluate(studio.folder / "best.yaml")
     assert 1000 * evaluation.metrics["mass"].value == pytest.approx(mass, abs=0.06)
     assert evaluation.met

@@ -82,6 +82,22 @@ def studio(browser, tmp_path_factory):
         yield page
 
 
+def test_undo_keeps_the_menus_of_the_file(studio):
+    """Undo of a number repaints the menus; each still reads what the design states."""
+    page = studio.page
+    field = page.locator('.wish[data-path="requirements.stiffness_min.min"] input[type=text]')
+    before, menus = studio.mass, page.locator("#menus select")
+    words = menus.evaluate_all("all => all.map((x) => x.value)")
+    assert studio.menu(MATERIAL).input_value() == "steel_42crmo4"
+    field.fill("9.5")
+    field.press("Enter")
+    page.locator(".wish.changed").wait_for()
+    assert studio.mass != before
+    page.locator("#undo").click()
+    assert studio.mass == before
+    assert menus.evaluate_all("all => all.map((x) => x.value)") == words
+
+
 def test_a_choice_is_solved_undone_and_saved(studio):
     """Its effect stands below the menu; undo, redo, A and the saved file carry the word."""
     page, before = studio.page, studio.mass
@@ -152,6 +168,20 @@ def test_the_duty_cycle_runs(browser, tmp_path):
         page.locator("#shown-1").select_option(index=3)
         assert page.locator("#sinks tr").count() >= 4
         assert re.search(r"J from the supply.*Efficiency", page.locator("#sources").text_content())
+        told_at_once = page.evaluate(
+            """() => { document.getElementById("cycle").dispatchEvent(new Event("change"));
+              const ids = ["told", "sinks", "sources"];
+              return ids.map((id) => document.getElementById(id).textContent); }"""
+        )
+        assert told_at_once == ["The run is being calculated …", "", ""]
+        told.filter(has_text="force reserve").wait_for(timeout=60_000)
+        assert page.locator("#duty.old").count() == 0
+        old = page.evaluate(
+            """() => { change("requirements.stiffness_min.min", 9.8); solve(); paint();
+              return document.getElementById("duty").classList.contains("old"); }"""
+        )
+        assert old
+        page.locator("#duty:not(.old)").wait_for(timeout=60_000)
         assert violations(page) == []
         page.set_viewport_size({"width": 320, "height": 800})
         assert page.evaluate("document.documentElement.scrollWidth") <= 320

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 import threading
 
@@ -81,6 +82,15 @@ def test_solve_equals_optimise(studio):
     assert not any(row["missed"] for row in shown["holds"])
     count = sum(2 * points for part in shown["section"]["parts"] for points in part["polygons"])
     assert len(shown["section"]["numbers"]) == count
+
+
+def test_advice_that_is_not_followed_is_listed(studio):
+    """A thick rod leaves a small annulus, whose pressure with a blocked port exceeds the advice."""
+    assert studio.solve({}, never)["advice"] == []
+    thick = studio.actuator.changed({"rod.outer_diameter": "18 mm"})
+    (line,) = model._not_followed(ao.evaluate(thick))
+    assert line.endswith(" (≥ 1)")
+    assert float(line.split()[-3]) < 1
 
 
 def test_the_first_answer_is_the_whole_one(studio):
@@ -261,6 +271,17 @@ def test_nothing_fits(studio, monkeypatch):
         studio.report(wish)
     assert not studio._file.with_name("none.yaml").exists()
 
+    card = (
+        "1  seals.rod.friction_coefficient  0.1 → 0.05\n"
+        "2  requirements.friction_running.max  200 N → 240 N\n"
+        "no help alone: piston.nut.diameter\nno proof; -v shows\nthe search.\n\ncare: one (-v)"
+    )
+    assert model._for_a_page(card, studio.actuator.design) == (
+        "1  rod seal friction coefficient   0.1 → 0.05\n"
+        "2  running friction                   200 N → 240 N\n"
+        "no help alone: piston nut diameter\nno proof."
+    )
+
     wished = threading.Event()
 
     def endless(*given, **how):
@@ -285,6 +306,7 @@ def test_a_design_that_fits_nowhere_opens_at_the_nearest_miss(studio):
     shown = opened.solve({}, never, explain=True)
     assert not shown["feasible"]
     assert "nothing fits" in shown["card"]
+    assert not re.search(r"-v\b|--|next: |requirements\.|seals\.", shown["card"])
     wish = {STIFFNESS: "9.5 kN/mm"}
     best = studio.solve(wish, never)["objective"]
     assert opened.solve(wish, never)["objective"] == pytest.approx(best, rel=1e-6)
