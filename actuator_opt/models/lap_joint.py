@@ -262,7 +262,8 @@ def ultimate_line_force(
         edge = sqrt(wave**2 + brittle)
         other = ratio * edge - (1 + ratio) * strain_difference / size
         bent = wave * (1 - wave**2) / edge
-        cosine = xp.cosh(minimum(y, FAR))
+        grown = xp.exp(minimum(y, FAR))
+        cosine = (grown + 1 / grown) / 2
         slip, turn = other * cosine, (ratio * bent + other * wave) * cosine
         short = xp.log(absolute(slip) + sqrt(slip**2 + 1))
         yields = real(other) > real(wave)
