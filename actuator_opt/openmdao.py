@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .api.actuator import Actuator, Result, as_actuator, located
-from .api.sessions import Price, Session
+from .api.session_results import Price
+from .api.sessions import Session
 from .base.errors import ActuatorError, Diagnostic, InputError, UsageError, library, remedy
 from .base.numeric import STEP, namespace
 from .base.quantities import Quantity

@@ -63,14 +63,13 @@ if TYPE_CHECKING:
         restore as restore,
     )
     from .results import exit_code as exit_code, report as report
-    from .sessions import (
+    from .session_results import (
         BareOptimum as BareOptimum,
         OptimumCurve as OptimumCurve,
         Prediction as Prediction,
         Price as Price,
-        Session as Session,
-        session as session,
     )
+    from .sessions import Session as Session, session as session
     from .simulations import (
         Compared as Compared,
         Trial as Trial,
@@ -125,7 +124,8 @@ _PUBLIC = {
     "reports": "save",
     "restoring": "Restored draw_run report_run restore",
     "results": "exit_code report",
-    "sessions": "BareOptimum OptimumCurve Prediction Price Session session",
+    "session_results": "BareOptimum OptimumCurve Prediction Price",
+    "sessions": "Session session",
     "simulations": """
         Compared Trial compare_measured cycle_scenario fitting read_scenario servo_sensitivities
         simulate verify_dynamics write_comparison write_signals write_simulation

@@ -60,7 +60,7 @@ def studio(
     With --offline, the page becomes one file for a colleague: it has the models of this design.
     """
     from ..base.files import require_folder
-    from ..studio.choices import Choices
+    from ..studio.choices import ChoiceStudio
     from ..studio.server import Server
 
     if design == "-":
@@ -75,7 +75,7 @@ def studio(
         return
     require_folder(out)
     with Server(port or 0) as server:
-        opened = Choices.opened(design, set=job.set, plugins=plugin or (), out=out, seed=seed)
+        opened = ChoiceStudio.opened(design, set=job.set, plugins=plugin or (), out=out, seed=seed)
         if as_json:
             streams.out_json({"address": server.address})
         else:

@@ -301,7 +301,7 @@ def _usual(design: Design, loc: Loc, word: str, faults: Sequence[Fault | Diagnos
 # ---- the designs with other words ----
 
 
-class Choices:
+class ChoiceStudio:
     """A studio whose changes may also be words; each choice of words has a studio of its own.
 
     All functions are those of `Studio`. Like it, it is not safe for threads.
@@ -327,7 +327,7 @@ class Choices:
         plugins: Sequence[Path] = (),
         out: Path = Path("reports"),
         seed: int = 0,
-    ) -> Choices:
+    ) -> ChoiceStudio:
         """Open a design file; parameters and errors as for `Studio`.
 
         Variables with listed sizes stand at the sizes of the best design, and get menus.

@@ -18,7 +18,7 @@ from typing import Any, ClassVar
 
 from ..base.errors import ActuatorError, Diagnostic, Unsolvable, UsageError
 from ..base.files import read_json
-from .choices import Choices
+from .choices import ChoiceStudio
 from .model import Numbers
 from .page import POLICY, page
 from .saving import require_name
@@ -71,7 +71,7 @@ class Server(ThreadingHTTPServer):
 
     daemon_threads = True
     block_on_close = False
-    studio: Choices
+    studio: ChoiceStudio
     worker: Worker
     fault: Fault
 
@@ -93,7 +93,7 @@ class Server(ThreadingHTTPServer):
         """Address of the page, with the token in its fragment, which browsers send nowhere."""
         return f"http://{LOOPBACK}:{self.server_port}/#{self.token}"
 
-    def serve(self, studio: Choices, fault: Fault) -> None:
+    def serve(self, studio: ChoiceStudio, fault: Fault) -> None:
         """Answer requests until Ctrl-C; `fault` reports an unexpected exception."""
         self.studio, self.fault, self.worker = studio, fault, Worker()
         try:

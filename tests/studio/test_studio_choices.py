@@ -10,7 +10,7 @@ from cli_runner import DESIGNS, run
 import actuator_opt as ao
 from actuator_opt.base.errors import InputError, UsageError
 from actuator_opt.studio import cycle
-from actuator_opt.studio.choices import Choices, entries_of, menus
+from actuator_opt.studio.choices import ChoiceStudio, entries_of, menus
 from actuator_opt.studio.model import Studio
 from actuator_opt.studio.worker import Dropped
 
@@ -29,7 +29,7 @@ def studio(tmp_path_factory):
     folder = tmp_path_factory.mktemp("choices")
     file = folder / "steel.yaml"
     file.write_text((DESIGNS / "steel_baseline.yaml").read_text("utf-8"), "utf-8")
-    return Choices(Studio(str(file), out=folder / "reports"))
+    return ChoiceStudio(Studio(str(file), out=folder / "reports"))
 
 
 def test_menus_of_the_knee():
@@ -161,7 +161,7 @@ def test_listed_sizes_are_menus(tmp_path):
     text = (DESIGNS / "steel_baseline.yaml").read_text("utf-8")
     text = text.replace("  rod.outer_diameter:\n", "  rod.outer_diameter:\n    sizes: iso_3320\n")
     (tmp_path / "sizes.yaml").write_text(text, "utf-8")
-    studio = Choices.opened(str(tmp_path / "sizes.yaml"))
+    studio = ChoiceStudio.opened(str(tmp_path / "sizes.yaml"))
     described = studio.describe({}, never)
     menu = next(x for x in described["menus"] if x["path"] == "rod.outer_diameter")
     assert menu["group"] == "Sizes"

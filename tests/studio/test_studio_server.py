@@ -33,19 +33,19 @@ class Recorder:
         return {"fine": True}
 
     def describe(self, changes, stop):
-        """As `Choices.describe`."""
+        """As `ChoiceStudio.describe`."""
         return {"name": "x"}
 
     def first(self, changes, stop):
-        """As `Choices.first`."""
+        """As `ChoiceStudio.first`."""
         return self._note("first", dict(changes))
 
     def solve(self, changes, stop, *, explain=False, search=False):
-        """As `Choices.solve`."""
+        """As `ChoiceStudio.solve`."""
         return self._note("solve", dict(changes), explain, search)
 
     def cycle(self, changes, name, stop):
-        """As `Choices.cycle`."""
+        """As `ChoiceStudio.cycle`."""
         return self._note("cycle", dict(changes), name)
 
     def prices(self, changes, paths, stop, *, draw=False):
