@@ -12,7 +12,7 @@ from actuator_opt.optimisation import kkt, nlopt_wrapper, solver
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.kkt import Curvature
 from actuator_opt.optimisation.problem import BoxProblem, PointValues, Space
-from actuator_opt.optimisation.resolve import parallel_descents
+from actuator_opt.optimisation.resolve import ladder, parallel_descents
 from actuator_opt.optimisation.resolve.parallel_descents import Descents, SearchResult
 from actuator_opt.optimisation.solution import Outcome
 from actuator_opt.optimisation.solver import Halton, solve
@@ -162,6 +162,25 @@ def test_kink_is_not_called_an_optimum():
     assert found.outcome is Outcome.NOT_STATIONARY
     assert "kink" in found.outcome.remedy
     assert found.objective == pytest.approx(1.0, abs=1e-6)
+
+
+def test_a_kink_that_several_starts_reach_is_searched_once(monkeypatch):
+    """Re-solving ends at the kink of max(x, 1/x) y + 1/y^2; a sweep would only repeat it."""
+
+    def evaluate(x):
+        slope = np.where(x[0].real >= 1, x[0], 1 / x[0])
+        return PointValues(slope * x[1] + x[1] ** -2)
+
+    sweeps = []
+    monkeypatch.setattr(
+        ladder, "solve", lambda *a, **k: (sweeps.append(k["samples"]), solve(*a, **k))[1]
+    )
+    problem = box(evaluate)
+    evaluator = Evaluator(problem)
+    point = evaluator.point(evaluator.space.to_z(np.array([1.4, 1.1])))
+    end = ladder.search_near(problem, evaluator, point.z, point, feasible_z=point.z)
+    assert end.x == pytest.approx([1.0, 2 ** (1 / 3)], rel=1e-5)
+    assert sweeps == [0]
 
 
 def test_nan_in_part_of_the_box():
