@@ -165,6 +165,11 @@ class ParametricProblem:
             raise InputError(f"{len(self.parameter_names)} parameters need as many values")
         object.__setattr__(self, "parameters", values)
 
+    @classmethod
+    def of(cls, problem: BoxProblem) -> ParametricProblem:
+        """A problem without parameters."""
+        return cls(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
+
     def at(self, parameters: Array) -> BoxProblem:
         """The problem at other parameter values (q,)."""
         return self.with_columns(np.asarray(parameters)[:, None])

@@ -19,7 +19,7 @@ import numpy as np
 
 from ..base.dataclass import dataclass
 from ..base.progress import tell
-from . import kkt, nlopt_wrapper
+from . import kinks, kkt, nlopt_wrapper
 from .evaluator import CHUNK, Evaluator, LimitReached, Point
 from .problem import BoxProblem, Vector
 from .resolve.parallel_descents import (
@@ -301,7 +301,7 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
     point, idle = _settle(search, best)
     quality = None
     if point.valid and evaluator.space.size:
-        quality = kkt.check(
+        quality = kinks.check(
             evaluator, point, curvature=True, objective_scale=search.objective_scale
         )
     outcome = _outcome(search, swept, point, quality)

@@ -305,7 +305,7 @@ class WarmStart:
     ) -> tuple[Point | None, Vector | None]:
         """Optimum reached from the known optima, and a feasible point; each None if not found."""
         problem = evaluator.problem
-        parametric = ParametricProblem(problem, (), np.zeros(0), lambda x, _: problem.evaluate(x))
+        parametric = ParametricProblem.of(problem)
         if not valleys or not applicable(parametric, evaluator):
             return None, None
         changed = ChangedProblems(parametric, evaluator, np.zeros((0, 1)))

@@ -17,7 +17,7 @@ from dataclasses import field
 import numpy as np
 
 from ...base.dataclass import dataclass
-from .. import kkt, repairs
+from .. import kinks, repairs
 from ..evaluator import Evaluator, Point
 from ..kkt import polish
 from ..problem import BoxProblem, ParametricProblem, Vector
@@ -25,7 +25,6 @@ from ..solution import MET, Solution
 from ..solver import solve
 from . import steps
 from .changed import ChangedProblems, applicable
-from .parallel_descents import across_kink
 from .steps import Valley
 
 BETTER = 1e-8
@@ -256,7 +255,7 @@ def search_near(
     if steps.is_met(polished) and polished.objective <= feasible.objective:
         if _optimal(changed, polished):
             return polished
-        beside = across_kink(changed, polished)
+        beside = kinks.optimum_beside(changed, polished)
         if beside is not None and _lower(beside, feasible):
             return beside
     further = [p.x for p in (feasible, *starts)]
@@ -282,4 +281,4 @@ def _lower(point: Point, other: Point) -> bool:
 
 
 def _optimal(evaluator: Evaluator, point: Point) -> bool:
-    return steps.is_met(point) and kkt.check(evaluator, point).residual <= steps.RESIDUAL
+    return steps.is_met(point) and kinks.check(evaluator, point).residual <= steps.RESIDUAL

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.dataclass import dataclass
-from .. import kkt, nlopt_wrapper, repairs
+from .. import kinks, kkt, nlopt_wrapper, repairs
 from ..evaluator import Evaluator, LimitReached, Point
 from ..kkt import polish
 from ..nlopt_wrapper import ARRIVAL
@@ -52,37 +52,8 @@ ELSEWHERE = 1.0
 descent starts from the point where the restoration ended."""
 
 
-ACROSS = (1e-10, 1e-8, 1e-7)
-"""Distances, in solver coordinates, at which the other side of a kink is tried (our choice)."""
-
-
 LOCAL_EVALUATIONS = 150
 """Maximum number of evaluations in one local SLSQP run on the default path."""
-
-
-def across_kink(evaluator: Evaluator, point: Point) -> Point | None:
-    """An optimum beside a feasible point, on the other side of a kink; None if there is none.
-
-    Where a limit is the greater of two values, an optimum often lies where both are equal. The
-    gradients on one side may then satisfy the optimality conditions, those on the other not.
-    """
-    if not evaluator.exact:
-        return None
-    slope = kkt.lagrangian_slope(evaluator, point)
-    largest = float(np.abs(slope).max(initial=0.0))
-    if not largest > 0:
-        return None
-    known = kkt.check(evaluator, point).residual
-    for distance in ACROSS:
-        for step in (distance * slope / largest, -distance * slope / largest):
-            z = np.clip(point.z + step, evaluator.space.lower, evaluator.space.upper)
-            trial = evaluator.point(z)
-            if not trial.valid or kkt.check(evaluator, trial).residual > 0.5 * known:
-                continue
-            trial = polish(evaluator, trial)
-            if trial.violation <= MET and kkt.check(evaluator, trial).residual <= RESIDUAL:
-                return trial
-    return None
 
 
 @dataclass
@@ -128,7 +99,7 @@ class Descents:
         """Residual of the optimality conditions; infinite where the model is undefined."""
         if not point.valid:
             return np.inf
-        return kkt.check(self.evaluator, point, objective_scale=self.objective_scale).residual
+        return kinks.check(self.evaluator, point, objective_scale=self.objective_scale).residual
 
     def same(self, point: Point) -> SearchResult | None:
         """The known optimum at which a point has arrived, or None."""
@@ -192,8 +163,8 @@ class Descents:
     def finish(self, point: Point, algorithm: str) -> SearchResult:
         """Refine a point by Newton steps, and add it to the optima."""
         polished = polish(self.evaluator, point)
-        if polished.valid and polished.violation <= MET and self.residual(polished) > RESIDUAL:
-            polished = across_kink(self.evaluator, polished) or polished
+        if self.residual(polished) > RESIDUAL:
+            polished = kinks.optimum_beside(self.evaluator, polished) or polished
         if polished is not point:
             algorithm = f"{algorithm}, {FINISH}"
         optimum = self.same(polished) if polished.valid else None

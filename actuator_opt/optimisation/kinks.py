@@ -1,0 +1,279 @@
+"""Optima on a kink of objective or limits: there the gradient of one side alone proves nothing.
+
+A limit is often the least of several smooth margins, for example the larger thread that two rings
+need. A kink is the surface on which two of these margins are equal. It divides the neighbourhood of
+a point into pieces. On each piece all rows are smooth, and the kink is a further limit: the
+distance to it may not become negative. A point on the kink is a local minimum exactly if it is one
+on every piece, whichever rows the kink bends and whichever way. So the optimality conditions are
+checked on every piece [Scholtes2012].
+
+The rows of a piece are extrapolated from points within it. For a row g and a short step s into the
+piece, this is 3 g(z + s) - 3 g(z + 2 s) + g(z + 3 s), which is exact for quadratic rows. The
+distance to the kink is the difference of a bent row between both sides, divided by the difference
+of its gradients. Each piece is thus a smooth problem with one more limit per kink, to which Newton
+steps, multipliers, Hessians and prices apply as usual.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ..base.dataclass import dataclass
+from ..base.numeric import Array
+from . import kkt
+from .evaluator import Evaluator, Point
+from .problem import BoxProblem, ParametricProblem, PointValues, Vector
+from .resolve.steps import RESIDUAL, is_met
+
+BESIDE = 1e-5
+"""Largest distance of a kink from a point on it, in solver coordinates (our choice)."""
+
+NEAR = 1e-3
+"""Largest distance of a kink near a point, from which Newton steps lead to it (our choice)."""
+
+INSIDE = 5e-5
+"""Step into a piece, in solver coordinates (our choice). It is larger than the steps that Hessians
+and derivatives with respect to parameters take, so these stay on their piece."""
+
+JUMP = 1e-2
+"""Least change of a gradient, as a share of its length, across a kink (our choice)."""
+
+PARALLEL = 0.99
+"""Least cosine between the normals that belong to one kink (our choice)."""
+
+MOST = 3
+"""Maximum number of kinks at a point (our choice): they divide its neighbourhood into 8 pieces."""
+
+WEIGHTS = (3.0, -3.0, 1.0)
+"""Factors of the values after one, two and three steps, which extrapolate to no step."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece of a problem beside its kinks: a smooth problem, with a limit for each kink.
+
+    Without kinks, this is the problem itself.
+
+    Parameters
+    ----------
+    parametric : the smooth problem with its parameters; the limits of kinks follow the constraints
+    evaluator, point : its evaluator, and the point in question
+    quality : optimality conditions at the point
+    kinks : number of kinks
+    """
+
+    parametric: ParametricProblem
+    evaluator: Evaluator
+    point: Point
+    quality: kkt.KktResidual
+    kinks: int = 0
+
+    @property
+    def pull(self) -> float:
+        """Sum of the kinks' multipliers: 0 if the optimum would not leave this piece anyway."""
+        count = len(self.quality.multipliers) - self.kinks
+        return float(self.quality.multipliers[count:].sum())
+
+
+@dataclass(frozen=True)
+class _Kinks:
+    """The k kinks near a point, with nf free variables.
+
+    Parameters
+    ----------
+    evaluator, z : the problem with kinks, and the coordinates of the point (nf,)
+    normals : unit normals of the kinks (k, nf), within a few per cent
+    rows : for each kink, the row that it bends most (k,)
+    """
+
+    evaluator: Evaluator
+    z: Vector
+    normals: Vector
+    rows: npt.NDArray[np.intp]
+    step: float
+    inward: Vector = field(init=False)
+    """Directions (nf, k) that lead away from one kink each, and along the others."""
+
+    def __post_init__(self) -> None:
+        space = self.evaluator.space
+        room = 10 * self.step
+        movable = (self.z - space.lower > room) & (space.upper - self.z > room)
+        inverse = np.linalg.pinv(self.normals * movable, rcond=0.1)
+        if not np.allclose(self.normals @ inverse, np.eye(len(self.rows)), atol=1e-6):
+            inverse = np.linalg.pinv(self.normals)
+        object.__setattr__(self, "inward", inverse)
+
+    def signs(self) -> Iterator[Vector]:
+        """Sides (k,) of the kinks, 1 or -1, for every piece."""
+        for signs in itertools.product((1.0, -1.0), repeat=len(self.rows)):
+            yield np.array(signs)
+
+    def piece(self, parametric: ParametricProblem, signs: Vector) -> ParametricProblem:
+        """The smooth problem on the piece with these `signs`."""
+        problem, m = parametric.problem, len(parametric.problem.constraint_names)
+        labels = ("the objective", *problem.constraint_names, *problem.equality_names)
+        steps = [self.step * (self.inward @ sides) for sides in (signs, *_flipped(signs))]
+        slopes = self.evaluator.jacobians(self.z[:, None] + np.stack(steps, axis=1), inside=False)
+        jumps = [slopes[i, 0] - slopes[i, 1 + k] for k, i in enumerate(self.rows)]
+        lengths = [float(np.linalg.norm(jump) * np.sign(jump @ steps[0])) for jump in jumps]
+
+        def values(problem: BoxProblem, x: Array) -> PointValues:
+            here, *beyond = (self._extrapolated(problem, x, step) for step in steps)
+            distances = [
+                (here[i] - other[i]) / (length or np.inf)
+                for i, other, length in zip(self.rows, beyond, lengths, strict=True)
+            ]
+            margins = np.concatenate([here[1 : 1 + m], np.stack(distances)])
+            return PointValues(here[0], margins, here[1 + m :])
+
+        smooth = replace(
+            problem,
+            evaluate=lambda x: values(problem, x),
+            constraint_names=(
+                *problem.constraint_names, *(f"kink of {labels[i]}" for i in self.rows)
+            ),
+            start=None, relaxable=None, groups=None,
+        )  # fmt: skip
+        return replace(
+            parametric,
+            problem=smooth,
+            evaluate=lambda x, parameters: values(parametric.with_columns(parameters), x),
+        )
+
+    def _extrapolated(self, problem: BoxProblem, x: Array, step: Vector) -> Array:
+        """Rows (rows, K) at points (n, K), extrapolated along a step (nf,) into a piece."""
+        space = self.evaluator.space
+        results = []
+        for count in range(1, 1 + len(WEIGHTS)):
+            move = count * step[:, None]
+            moved, log = np.array(x), space.logarithmic[:, None]
+            moved[space.free] *= np.exp(np.where(log, move, 0.0))
+            moved[space.free] += np.where(log, 0.0, move * space.scale[:, None])
+            results.append(problem.rows(moved))
+        total = np.tensordot(WEIGHTS, np.stack(results), axes=1)
+        return np.where(np.isfinite(results[0]), total, results[0])  # an unloaded part: infinite
+
+
+def _flipped(signs: Vector) -> list[Vector]:
+    """The sides of all pieces that only one kink separates from a piece."""
+    return [np.where(np.arange(len(signs)) == k, -signs, signs) for k in range(len(signs))]
+
+
+def _kinks_near(evaluator: Evaluator, point: Point, distance: float) -> _Kinks | None:
+    """The kinks of objective and nearly active limits within a distance; None if none or many."""
+    space, m, unit = evaluator.space, evaluator.constraint_count, np.eye(evaluator.space.size)
+    z = point.z[:, None] + distance * np.concatenate([unit, -unit], axis=1)
+    used = np.abs(point.rows) <= 10 * distance
+    used[0], used[1 + m :] = True, True
+    slopes = evaluator.jacobians(z, inside=False)[used].reshape(used.sum(), 2, space.size, -1)
+    here = evaluator.jacobian(point)[used][:, None]
+    jumps = np.nan_to_num(slopes[:, 0] + slopes[:, 1] - 2 * here)  # one side; both cancel if smooth
+    lengths = np.linalg.norm(slopes, axis=3).max(axis=1)
+    lengths[0] = np.maximum(lengths[0], 1e-3 * abs(point.objective))
+    shares = np.linalg.norm(jumps, axis=2) / np.maximum(lengths, 1e-300)
+    bent, at = np.nonzero(shares > JUMP)
+    shares, normals = shares[bent, at], jumps[bent, at]
+    normals = normals / np.linalg.norm(normals, axis=1)[:, None]
+    left, chosen, rows = np.ones(len(bent), dtype=bool), np.empty((0, space.size)), []
+    while left.any():
+        if len(chosen) == MOST:
+            return None
+        parallel = np.abs(normals @ normals.T) >= PARALLEL
+        best = np.argmax(np.where(left, parallel.sum(axis=0), 0))
+        chosen = np.concatenate([chosen, normals[best][None]])
+        rows.append(bent[np.argmax(np.where(parallel[best], shares, 0.0))])
+        basis = np.linalg.qr(chosen.T)[0]
+        left &= np.linalg.norm(normals @ basis, axis=1) < PARALLEL
+    if not rows:
+        return None
+    step = distance * INSIDE / BESIDE
+    return _Kinks(evaluator, point.z, chosen, np.flatnonzero(used)[rows], step)
+
+
+def pieces(
+    parametric: ParametricProblem, evaluator: Evaluator, point: Point, objective_scale: float = 0.0
+) -> list[Piece]:
+    """The pieces beside the kinks at a point if they prove it an optimum, else the problem itself.
+
+    The first piece has the least pull, see `Piece`. A point that is an optimum without regard to
+    kinks needs no pieces.
+
+    Parameters
+    ----------
+    parametric : the problem with its parameters
+    evaluator, point : its evaluator, and the point
+    objective_scale : see `kkt.slope_scale`
+    """
+    whole = kkt.check(evaluator, point, objective_scale=objective_scale)
+    result = [Piece(parametric, evaluator, point, whole)]
+    if whole.residual <= RESIDUAL or not evaluator.exact or not is_met(point):
+        return result
+    kinks = _kinks_near(evaluator, point, BESIDE)
+    proven = []
+    for signs in kinks.signs() if kinks else ():
+        piece = _piece(kinks.piece(parametric, signs), point, objective_scale, len(signs))
+        if not is_met(piece.point) or piece.quality.residual > RESIDUAL:
+            return result
+        proven.append(piece)
+    return sorted(proven, key=lambda piece: piece.pull) or result
+
+
+def _piece(
+    parametric: ParametricProblem, point: Point, objective_scale: float, kinks: int
+) -> Piece:
+    evaluator = Evaluator(parametric.problem)
+    here = evaluator.point(point.z)
+    quality = kkt.check(evaluator, here, objective_scale=objective_scale)
+    return Piece(parametric, evaluator, here, quality, kinks)
+
+
+def check(
+    evaluator: Evaluator, point: Point, *, curvature: bool = False, objective_scale: float = 0.0
+) -> kkt.KktResidual:
+    """Optimality conditions at a point as in `kkt.check`, on a kink those of all pieces together.
+
+    The residual is then the largest, and the curvature the least, of all pieces.
+    """
+    found = pieces(ParametricProblem.of(evaluator.problem), evaluator, point, objective_scale)
+    qualities = [piece.quality for piece in found]
+    if curvature:
+        qualities = [
+            kkt.check(p.evaluator, p.point, curvature=True, objective_scale=objective_scale)
+            for p in found
+        ]
+    order = list(kkt.Curvature)
+    worst = max((q.curvature for q in qualities if q.curvature), key=order.index, default=None)
+    return replace(
+        qualities[0],
+        residual=max(quality.residual for quality in qualities),
+        multipliers=qualities[0].multipliers[: evaluator.constraint_count],
+        curvature=worst,
+    )
+
+
+def optimum_beside(evaluator: Evaluator, point: Point) -> Point | None:
+    """An optimum on or beside a kink near a feasible point; None if there is none.
+
+    Newton steps on each piece end on the kink if the optimum is there.
+    """
+    if not evaluator.exact or not is_met(point):
+        return None
+    starts = itertools.chain([point], _ends(evaluator, point, NEAR))
+    ends = (end for start in starts for end in _ends(evaluator, start, BESIDE))
+    return next((end for end in ends if check(evaluator, end).residual <= RESIDUAL), None)
+
+
+def _ends(evaluator: Evaluator, point: Point, distance: float) -> Iterator[Point]:
+    """The feasible points at which Newton steps end on each piece beside the kinks near a point."""
+    kinks = _kinks_near(evaluator, point, distance)
+    for signs in kinks.signs() if kinks else ():
+        smooth = kinks.piece(ParametricProblem.of(evaluator.problem), signs)
+        beside = Evaluator(smooth.problem)
+        end = evaluator.point(kkt.polish(beside, beside.point(point.z), tolerance=1e-10).z)
+        if is_met(end):
+            yield end
