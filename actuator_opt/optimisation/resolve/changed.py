@@ -9,20 +9,24 @@ import numpy as np
 
 from ...base.dataclass import dataclass
 from ...base.numeric import STEP
+from .. import kinks
 from ..evaluator import Evaluator, Point
 from ..problem import ParametricProblem, Vector
 from ..solution import MET
 from .steps import (
     FEASIBLE,
     LONGEST,
+    RESIDUAL,
     Descent,
     Result,
     Steps,
     Valley,
     full_steps,
+    is_met,
     restoring_steps,
     run_batch,
     trusted_steps,
+    valley_at,
 )
 
 
@@ -141,12 +145,38 @@ class ChangedProblems:
             feasible = evaluator.violations(margins, "worst") <= FEASIBLE
             unmoved_objectives = np.where(feasible, margins[0], np.inf).tolist()
         optima = self.run([full_steps(evaluator, valley.full(), start) for start in first_points])
+        missing = [k for k, optimum in enumerate(optima) if optimum is None]
+        on_kink = self.subset(missing).near_kink(valley.point, starts[:, missing])
+        for k, optimum in zip(missing, on_kink, strict=True):
+            optima[k] = optimum
         return [
             None  # the steps led to another valley
             if optimum is not None and unmoved < optimum.objective - 1e-9 * abs(optimum.objective)
             else optimum
             for optimum, unmoved in zip(optima, unmoved_objectives, strict=True)
         ]
+
+    def near_kink(self, point: Point, starts: Vector) -> list[Point | None]:
+        """The optimum of each problem that stays on the kinks of the solved problem's optimum.
+
+        None for all problems if the optimum `point` is not on a kink. `starts` are coordinates
+        (nf, K).
+        """
+        results: list[Point | None] = [None] * starts.shape[1]
+        first, *others = kinks.pieces(self.parametric, self.evaluator, point)
+        if not others or not results:
+            return results
+        valley = valley_at(first.evaluator, first.point)
+        smooth = replace(self, parametric=first.parametric, evaluator=first.evaluator)
+        ends = smooth.run([full_steps(first.evaluator, valley.full(), z) for z in starts.T])
+        for k, end in enumerate(ends):
+            if end is not None:
+                evaluator = Evaluator(self.parametric.at(self.parameters[:, k]))
+                evaluator.adopt_check(self.evaluator)
+                optimum = evaluator.point(end.z)
+                if is_met(optimum) and kinks.check(evaluator, optimum).residual <= RESIDUAL:
+                    results[k] = optimum
+        return results
 
     def descend_from(
         self, valley: Valley, starts: Vector
