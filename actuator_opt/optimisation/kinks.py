@@ -33,7 +33,7 @@ from .resolve.steps import RESIDUAL, is_met
 BESIDE = 1e-5
 """Largest distance of a kink from a point on it, in solver coordinates (our choice)."""
 
-NEAR = 1e-3
+NEAR = 1e-4
 """Largest distance of a kink near a point, from which Newton steps lead to it (our choice)."""
 
 INSIDE = 5e-5
@@ -259,9 +259,12 @@ def check(
 def optimum_beside(evaluator: Evaluator, point: Point) -> Point | None:
     """An optimum on or beside a kink near a feasible point; None if there is none.
 
-    Newton steps on each piece end on the kink if the optimum is there.
+    Newton steps on each piece end on the kink if the optimum is there. A point that is an optimum
+    without regard to kinks needs none.
     """
     if not evaluator.exact or not is_met(point):
+        return None
+    if kkt.check(evaluator, point).residual <= RESIDUAL:
         return None
     starts = itertools.chain([point], _ends(evaluator, point, NEAR))
     ends = (end for start in starts for end in _ends(evaluator, start, BESIDE))

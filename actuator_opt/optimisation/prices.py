@@ -15,14 +15,15 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import field
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ..base.dataclass import dataclass
-from . import kkt
+from . import kinks, kkt
 from .actuator import Responses, perturbed, responses, with_bounds
 from .evaluator import Evaluator, Point
 from .problem import ParametricProblem, Vector
@@ -143,17 +144,48 @@ def movement(optimum: Optimum, derivatives: Responses) -> tuple[Vector, Vector]:
     return solution[:nf], shifts
 
 
-def reach(
-    optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
-) -> list[tuple[float | None, str | None]]:
+@dataclass(frozen=True)
+class LinearOptimum:
+    """An optimum on a smooth piece, as a linear function of the parameters.
+
+    Parameters
+    ----------
+    optimum : the optimum
+    derivatives : derivatives of all results with respect to the parameters
+    moves, shifts : change of the optimal point and of the multipliers, see `movement`
+    """
+
+    optimum: Optimum
+    derivatives: Responses
+    moves: Vector = field(init=False)
+    shifts: Vector = field(init=False)
+
+    def __post_init__(self) -> None:
+        moves, shifts = movement(self.optimum, self.derivatives)
+        object.__setattr__(self, "moves", moves)
+        object.__setattr__(self, "shifts", shifts)
+
+
+def slopes(pieces: Sequence[LinearOptimum]) -> Vector:
+    """Price (2, q) of a decrease and of an increase of each parameter.
+
+    The optimum moves to the piece on which it costs least, see `kinks`.
+    """
+    sides = [
+        one_sided(x.optimum, x.derivatives, np.flatnonzero(x.optimum.margins <= kkt.ACTIVE))
+        for x in pieces
+    ]
+    below, above = np.stack(sides, axis=1)
+    return np.stack([below.max(axis=0), above.min(axis=0)])
+
+
+def reach(pieces: Sequence[LinearOptimum]) -> list[tuple[float | None, str | None]]:
     """For each parameter, the nearest value at which the active limits change, and that change.
 
     Both are None if the active limits do not change while the parameter changes by up to ±100 %.
     """
     result: list[tuple[float | None, str | None]] = []
-    for value, changes in zip(
-        derivatives.values, _changes(optimum, derivatives, moves, shifts), strict=True
-    ):
+    for value, changes in zip(pieces[0].derivatives.values, _changes(pieces), strict=True):
         nearest = min(changes, key=lambda change: abs(change.distance), default=None)
         if nearest is None or abs(nearest.distance) > (abs(value) if value else 1.0):
             result.append((None, None))
@@ -175,7 +207,7 @@ class ActiveSetChange(NamedTuple):
 
 
 def ends(
-    optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
+    pieces: Sequence[LinearOptimum],
 ) -> list[tuple[ActiveSetChange | None, ActiveSetChange | None]]:
     """For each parameter, the nearest changes of active limits below and above its value."""
     return [
@@ -183,7 +215,7 @@ def ends(
             min((change for change in changes if change.direction < 0), key=_size, default=None),
             min((change for change in changes if change.direction > 0), key=_size, default=None),
         )
-        for changes in _changes(optimum, derivatives, moves, shifts)
+        for changes in _changes(pieces)
     ]
 
 
@@ -191,11 +223,17 @@ def _size(change: ActiveSetChange) -> float:
     return abs(change.distance)
 
 
-def _changes(
-    optimum: Optimum, derivatives: Responses, moves: Vector, shifts: Vector
-) -> Iterator[list[ActiveSetChange]]:
+def _changes(pieces: Sequence[LinearOptimum]) -> list[list[ActiveSetChange]]:
+    """For each parameter, the changes of active limits on all pieces."""
+    return [
+        list(itertools.chain(*changes)) for changes in zip(*map(_changes_on, pieces), strict=True)
+    ]
+
+
+def _changes_on(piece: LinearOptimum) -> Iterator[list[ActiveSetChange]]:
     """For each parameter, its changes at which a linearised margin or multiplier reaches zero."""
-    rates = margin_slopes(optimum, derivatives) + optimum.gradients @ moves
+    optimum, derivatives, shifts = piece.optimum, piece.derivatives, piece.shifts
+    rates = margin_slopes(optimum, derivatives) + optimum.gradients @ piece.moves
     active = optimum.active
     for k, value in enumerate(derivatives.values):
         changes: list[ActiveSetChange] = []
@@ -362,31 +400,32 @@ def prices(
     evaluator = Evaluator(parametric.problem)
     point = evaluator.point(evaluator.space.to_z(solution.x))
     evaluator.check_gradients(point)
-    quality = kkt.check(evaluator, point)
-    optimum = optimum_at(evaluator, point, quality)
-    derivatives = responses(parametric, evaluator, point, optimum.weights)
-    if bounds:
-        m = evaluator.constraint_count
-        derivatives = with_bounds(derivatives, evaluator, optimum.multipliers[m:])
-    moves, shifts = movement(optimum, derivatives)
-    active = np.flatnonzero(optimum.margins <= kkt.ACTIVE)
-    ends: list[tuple[float | None, float | None]] = [(None, None)] * len(derivatives.values)
+    pieces: list[LinearOptimum] = []
+    for piece in kinks.pieces(parametric, evaluator, point):
+        optimum = optimum_at(piece.evaluator, piece.point, piece.quality)
+        derivatives = responses(piece.parametric, piece.evaluator, piece.point, optimum.weights)
+        if bounds:
+            priced = pieces[0].optimum if pieces else optimum
+            multipliers = priced.multipliers[piece.evaluator.constraint_count :]
+            derivatives = with_bounds(derivatives, evaluator, multipliers)
+        pieces.append(LinearOptimum(optimum, derivatives))
+    first, ends = pieces[0], [(None, None)] * len(pieces[0].derivatives.values)
     if resolve and change:
         valleys = [
             valley_at(evaluator, p) for p in (point, *ladder.other_optima(evaluator, solution))
         ]
         solved = ladder.SolvedProblem(parametric, evaluator, valleys)
-        ends = _ends(solved, derivatives, moves, change)
+        ends = _ends(solved, first.derivatives, first.moves, change)
     return _rows(
         evaluator,
         point,
-        derivatives,
+        first.derivatives,
         change,
-        price=lagrangian_slopes(optimum, derivatives),
-        sides=one_sided(optimum, derivatives, active),
-        moves=moves,
+        price=lagrangian_slopes(first.optimum, first.derivatives),
+        sides=slopes(pieces),
+        moves=first.moves,
         ends=ends,
-        reach=reach(optimum, derivatives, moves, shifts),
+        reach=reach(pieces),
     )
 
 

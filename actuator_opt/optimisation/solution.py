@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from enum import Enum
 
 from ..base.dataclass import dataclass
@@ -10,6 +11,9 @@ from .problem import BoxProblem, Vector
 
 MET = 1e-6
 """Largest violation at which a constraint still counts as met."""
+
+BETTER = 1e-8
+"""An objective better by this share means that the point lies in another valley (local optimum)."""
 
 
 class Outcome(Enum):
@@ -125,6 +129,16 @@ class StartRecord:
     def feasible(self) -> bool:
         """Whether the start led to a point that meets every limit."""
         return self.violation <= MET
+
+
+def reached_again(starts: Sequence[StartRecord], objective: float) -> bool:
+    """Whether several different runs led to feasible points with at least this objective.
+
+    If such a point is no proven optimum, it is on a kink, and more runs would only reach it again.
+    """
+    room = BETTER * abs(objective)
+    ends = [start for start in starts if start.feasible and start.objective <= objective + room]
+    return len({(end.x.tobytes(), end.algorithm) for end in ends}) > 1
 
 
 @dataclass(frozen=True)

@@ -242,6 +242,7 @@ def _starts(search: Descents, swept: Sweep, count: int, further: Sequence[Vector
 def _default_path(search: Descents, points: list[Point]) -> None:
     """Run SLSQP in logarithmic variables, then other methods from failed starts.
 
+    Several runs that end at the same point, which is no optimum, end the search.
     If the first start leads to no feasible point, even after its worst violation was minimised, the
     other starts first minimise their worst violation.
     """
@@ -260,10 +261,11 @@ def _default_path(search: Descents, points: list[Point]) -> None:
     failed = [
         point
         for point in failed[:2]
-        if not search.descend(point, "LD_SLSQP", linear=True, max_evaluations=LOCAL_EVALUATIONS)
+        if not search.stuck
+        and not search.descend(point, "LD_SLSQP", linear=True, max_evaluations=LOCAL_EVALUATIONS)
     ]
     search.complete()
-    if search.succeeded or not search.feasible:
+    if search.succeeded or search.stuck or not search.feasible:
         return
     for point in failed:
         if search.descend(

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.dataclass import dataclass
-from . import kkt, prices
+from . import kinks, prices
 from .actuator import ActuatorProblem, Responses, responses
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import BoxProblem, ParametricProblem, Vector
@@ -85,8 +85,8 @@ class WarmStart:
         evaluator.check_gradients(point)
         optima = [point, *ladder.other_optima(evaluator, solution)]
         self.valleys = [valley_at(evaluator, optimum) for optimum in optima]
-        self._optimum: prices.Optimum | None = None
-        self._responses: dict[str, Responses] = {}
+        self._optima: list[prices.Optimum] = []
+        self._responses: list[dict[str, Responses]] = []
 
     def solve(self, problem: BoxProblem, stop: Stop | None = None) -> Solution:
         """Find the optimum of a changed problem with the same variables: steps, then a search.
@@ -215,15 +215,12 @@ class WarmStart:
         changes : change of each number, by PATH, per unit of the parameter
         size : value of the parameter that counts as a change of 100 %
         """
-        optimum = self.optimum
-        derivatives = self._along(changes, size)
-        moves, shifts = prices.movement(optimum, derivatives)
-        active = np.flatnonzero(optimum.margins <= kkt.ACTIVE)
-        below, above = prices.one_sided(optimum, derivatives, active)[:, 0]
+        pieces = self._along(changes, size)
+        below, above = prices.slopes(pieces)[:, 0]
         x_moves = np.zeros(len(self.point.x))
         slope = self.evaluator.space.slope(self.point.x[:, None])[:, 0]
-        x_moves[self.evaluator.space.free] = slope * moves[:, 0]
-        low, high = prices.ends(optimum, derivatives, moves, shifts)[0]
+        x_moves[self.evaluator.space.free] = slope * pieces[0].moves[:, 0]
+        low, high = prices.ends(pieces)[0]
         return LinearPath(
             float(below), float(above), x_moves,
             None if low is None else (float(low.distance), low.text),
@@ -231,39 +228,53 @@ class WarmStart:
         )  # fmt: skip
 
     @property
-    def optimum(self) -> prices.Optimum:
-        """The derivatives and active limits of the optimum, as needed for prices; computed once."""
-        if self._optimum is None:
-            quality = kkt.check(self.evaluator, self.point)
-            self._optimum = prices.optimum_at(self.evaluator, self.point, quality)
-        return self._optimum
+    def optima(self) -> list[prices.Optimum]:
+        """Derivatives and active limits of the optimum on each piece beside its kinks, for prices."""
+        if not self._optima:
+            self._optima = [
+                prices.optimum_at(piece.evaluator, piece.point, piece.quality)
+                for piece in self._pieces(())
+            ]
+        return self._optima
 
-    def _along(self, changes: Mapping[str, float], size: float) -> Responses:
-        """Derivatives with respect to one parameter that moves several numbers in proportion."""
+    def _pieces(self, paths: tuple[str, ...]) -> list[kinks.Piece]:
+        """The pieces of the problem with the numbers at `paths` as parameters."""
+        return kinks.pieces(self.actuator.parametric(paths), self.evaluator, self.point)
+
+    def _along(self, changes: Mapping[str, float], size: float) -> list[prices.LinearOptimum]:
+        """The optimum with one parameter that moves several numbers in proportion, per piece."""
         self.differentiate(changes)
-        parts = [(self._responses[path], change) for path, change in changes.items()]
-        first = parts[0][0]
-        return Responses(
-            ("change",),
-            np.array([size]),
-            np.asarray(sum(part.rows * change for part, change in parts)),
-            np.asarray(sum(part.mixed * change for part, change in parts)),
-            np.asarray(sum(part.bounds * change for part, change in parts)),
-            first.differences,
-        )
+        pieces = []
+        for optimum, responses_of in zip(self.optima, self._responses, strict=True):
+            parts = [(responses_of[path], change) for path, change in changes.items()]
+            derivatives = Responses(
+                ("change",),
+                np.array([size]),
+                np.asarray(sum(part.rows * change for part, change in parts)),
+                np.asarray(sum(part.mixed * change for part, change in parts)),
+                np.asarray(sum(part.bounds * change for part, change in parts)),
+                parts[0][0].differences,
+            )
+            pieces.append(prices.LinearOptimum(optimum, derivatives))
+        return pieces
 
     def differentiate(self, paths: Iterable[str]) -> None:
         """Compute the derivatives with respect to the numbers at `paths`, unless already known.
 
         A single call for many numbers takes little longer than a call for one number.
         """
-        missing = tuple(path for path in dict.fromkeys(paths) if path not in self._responses)
-        if missing:
-            parametric = self.actuator.parametric(missing)
-            new = responses(parametric, self.evaluator, self.point, self.optimum.weights)
+        known = self._responses[0] if self._responses else {}
+        missing = tuple(path for path in dict.fromkeys(paths) if path not in known)
+        if not missing:
+            return
+        self._responses = self._responses or [{} for _ in self.optima]
+        for piece, optimum, known in zip(
+            self._pieces(missing), self.optima, self._responses, strict=True
+        ):
+            new = responses(piece.parametric, piece.evaluator, piece.point, optimum.weights)
             for k, path in enumerate(missing):
                 column = slice(k, k + 1)
-                self._responses[path] = replace(
+                known[path] = replace(
                     new, names=(path,), values=new.values[column], rows=new.rows[:, column],
                     mixed=new.mixed[:, column], bounds=new.bounds[:, column],
                 )  # fmt: skip
@@ -372,7 +383,7 @@ class WarmStart:
 
 def _solution(evaluator: Evaluator, point: Point, algorithm: str) -> Solution:
     """A point as a solution; it counts as an optimum if it is feasible and stationary."""
-    quality = kkt.check(evaluator, point) if point.valid else None
+    quality = kinks.check(evaluator, point) if point.valid else None
     if point.violation > MET or quality is None:
         outcome = Outcome.INFEASIBLE
     else:

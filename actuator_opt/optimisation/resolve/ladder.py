@@ -21,14 +21,11 @@ from .. import kinks, repairs
 from ..evaluator import Evaluator, Point
 from ..kkt import polish
 from ..problem import BoxProblem, ParametricProblem, Vector
-from ..solution import MET, Solution
+from ..solution import BETTER, MET, Solution, reached_again
 from ..solver import solve
 from . import steps
 from .changed import ChangedProblems, applicable
 from .steps import Valley
-
-BETTER = 1e-8
-"""An objective better by this share means that the point lies in another valley (local optimum)."""
 
 ROUNDS = 3
 """Maximum number of rounds in which problems exchange optima; fewer if a round improves none."""
@@ -253,11 +250,9 @@ def search_near(
     feasible = changed.point(feasible_z)
     polished = polish(changed, feasible, iterations=8, tolerance=1e-10)
     if steps.is_met(polished) and polished.objective <= feasible.objective:
-        if _optimal(changed, polished):
+        polished = kinks.optimum_beside(changed, polished) or polished
+        if _optimal(changed, polished) and _lower(polished, feasible):
             return polished
-        beside = kinks.optimum_beside(changed, polished)
-        if beside is not None and _lower(beside, feasible):
-            return beside
     further = [p.x for p in (feasible, *starts)]
     for samples in (0, SAMPLES):
         solution = solve(problem, starts=len(further), samples=samples, more_starts=further)
@@ -267,9 +262,8 @@ def search_near(
             and solution.kkt.residual <= steps.RESIDUAL
         ):
             return point_of(changed, solution)
-        ends = [start.objective for start in solution.starts if start.feasible]
-        if sum(end <= solution.objective + BETTER * abs(end) for end in ends) > 1:
-            break  # several starts end here, at a kink: a sweep would only repeat that
+        if reached_again(solution.starts, solution.objective):
+            break
     if solution.feasible and solution.objective < feasible.objective:
         return point_of(changed, solution)
     return feasible

@@ -21,7 +21,7 @@ from ..evaluator import Evaluator, LimitReached, Point
 from ..kkt import polish
 from ..nlopt_wrapper import ARRIVAL
 from ..problem import ParametricProblem, Vector
-from ..solution import MET, StartRecord
+from ..solution import MET, StartRecord, reached_again
 from .changed import ChangedProblems
 from .steps import (
     RESIDUAL,
@@ -95,6 +95,14 @@ class Descents:
         """Whether a feasible point was reached."""
         return any(optimum.point.violation <= MET for optimum in self.optima)
 
+    @property
+    def stuck(self) -> bool:
+        """Whether several runs reached the same point, which is no optimum (see `reached_again`)."""
+        best = self.best()
+        if best is None or self.succeeded:
+            return False
+        return reached_again(self.records, best.point.objective)
+
     def residual(self, point: Point) -> float:
         """Residual of the optimality conditions; infinite where the model is undefined."""
         if not point.valid:
@@ -163,8 +171,7 @@ class Descents:
     def finish(self, point: Point, algorithm: str) -> SearchResult:
         """Refine a point by Newton steps, and add it to the optima."""
         polished = polish(self.evaluator, point)
-        if self.residual(polished) > RESIDUAL:
-            polished = kinks.optimum_beside(self.evaluator, polished) or polished
+        polished = kinks.optimum_beside(self.evaluator, polished) or polished
         if polished is not point:
             algorithm = f"{algorithm}, {FINISH}"
         optimum = self.same(polished) if polished.valid else None
