@@ -229,7 +229,7 @@ class WarmStart:
 
     @property
     def optima(self) -> list[prices.Optimum]:
-        """Derivatives and active limits of the optimum on each piece beside its kinks, for prices."""
+        """The optimum on each piece beside its kinks, as needed for prices; computed once."""
         if not self._optima:
             self._optima = [
                 prices.optimum_at(piece.evaluator, piece.point, piece.quality)

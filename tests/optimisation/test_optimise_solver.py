@@ -8,13 +8,13 @@ import problems
 import pytest
 
 from actuator_opt.base.errors import InputError
-from actuator_opt.optimisation import kkt, nlopt_wrapper, solver
+from actuator_opt.optimisation import kinks, nlopt_wrapper, solver
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.kkt import Curvature
 from actuator_opt.optimisation.problem import BoxProblem, PointValues, Space
 from actuator_opt.optimisation.resolve import ladder, parallel_descents
 from actuator_opt.optimisation.resolve.parallel_descents import Descents, SearchResult
-from actuator_opt.optimisation.solution import Outcome
+from actuator_opt.optimisation.solution import Outcome, StartRecord, reached_again
 from actuator_opt.optimisation.solver import Halton, solve
 
 
@@ -152,30 +152,44 @@ def test_flat_objective():
     assert found.feasible
 
 
-def test_kink_is_not_called_an_optimum():
-    """At the kink of max(x, 1/x) the slopes do not balance: feasible, with a remedy."""
+def folded(x):
+    """max(x, 1/x), with a kink at 1."""
+    return np.where(x.real >= 1, x, 1 / x)
 
-    def evaluate(x):
-        return PointValues(np.where(x[0].real >= 1, x[0], 1 / x[0]))
 
-    found = solve(box(evaluate, 1))
+def test_a_point_on_many_kinks_is_not_called_an_optimum():
+    """Where five kinks meet, the slopes do not balance, and no proof is tried: a remedy."""
+    found = solve(box(lambda x: PointValues(folded(x).sum(axis=0)), 5))
     assert found.outcome is Outcome.NOT_STATIONARY
     assert "kink" in found.outcome.remedy
-    assert found.objective == pytest.approx(1.0, abs=1e-6)
+    assert found.objective == pytest.approx(5.0, abs=1e-6)
+
+
+def test_a_search_that_reaches_a_kink_again_ends(monkeypatch):
+    """Where no proof is tried, runs that reach the same kink are not repeated."""
+    monkeypatch.setattr(kinks, "MOST", 0)
+    found = solve(box(lambda x: PointValues(folded(x[0]) * x[1] + x[1] ** -2)))
+    assert found.outcome is Outcome.NOT_STATIONARY
+    assert {start.algorithm for start in found.starts} == {"LD_SLSQP"}
+
+
+def test_one_run_from_two_equal_starts_is_no_repetition():
+    """The same run from the same start says nothing about a kink; another algorithm does."""
+    record = StartRecord(np.ones(2), 3.0, 0.0, "LD_SLSQP", 10)
+    assert not reached_again([record, record], 3.0)
+    assert reached_again([record, replace(record, algorithm="LD_SLSQP (linear variables)")], 3.0)
+    assert not reached_again([record, replace(record, x=np.zeros(2), objective=3.1)], 3.0)
+    assert not reached_again([record, replace(record, x=np.zeros(2), violation=1.0)], 3.0)
 
 
 def test_a_kink_that_several_starts_reach_is_searched_once(monkeypatch):
     """Re-solving ends at the kink of max(x, 1/x) y + 1/y^2; a sweep would only repeat it."""
-
-    def evaluate(x):
-        slope = np.where(x[0].real >= 1, x[0], 1 / x[0])
-        return PointValues(slope * x[1] + x[1] ** -2)
-
     sweeps = []
+    monkeypatch.setattr(kinks, "MOST", 0)
     monkeypatch.setattr(
         ladder, "solve", lambda *a, **k: (sweeps.append(k["samples"]), solve(*a, **k))[1]
     )
-    problem = box(evaluate)
+    problem = box(lambda x: PointValues(folded(x[0]) * x[1] + x[1] ** -2))
     evaluator = Evaluator(problem)
     point = evaluator.point(evaluator.space.to_z(np.array([1.4, 1.1])))
     end = ladder.search_near(problem, evaluator, point.z, point, feasible_z=point.z)
@@ -428,25 +442,3 @@ def test_the_best_point_is_completed(monkeypatch, slsqp):
     assert best.point.x == pytest.approx([2.0, 4.0], rel=1e-6)
     assert best.point.objective <= near.objective
     assert "stopped" not in {result.algorithm for result in search.optima}
-
-
-def test_an_optimum_on_a_kink_is_optimal(monkeypatch):
-    """Both values of max(x + 2 y, 2 x + y) limit x + y, but only one gives the gradient at x = y.
-
-    Newton steps are left out, as they may end on either side of the kink.
-    """
-
-    def evaluate(x):
-        one, other = x[0] + 2 * x[1], 2 * x[0] + x[1]
-        larger = np.where(other.real > one.real + 1e-15, other, one)
-        return PointValues(20 - x[0] - x[1], np.stack([6 - one, 6 - larger]))
-
-    monkeypatch.setattr(parallel_descents, "polish", lambda _, point: point)
-    evaluator = Evaluator(box(evaluate, constraints=("one", "larger")))
-    search = parallel_descents.Descents(evaluator, 0)
-    point = evaluator.point(evaluator.space.to_z(np.array([2.0, 2.0])))
-    assert search.residual(point) > 0.1
-    end = search.finish(point, "none")
-    assert end.good
-    np.testing.assert_allclose(end.point.x, 2, rtol=1e-6)
-    np.testing.assert_allclose(kkt.check(evaluator, end.point).multipliers, 1 / 3, rtol=1e-6)

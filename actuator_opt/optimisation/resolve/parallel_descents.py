@@ -97,7 +97,7 @@ class Descents:
 
     @property
     def stuck(self) -> bool:
-        """Whether several runs reached the same point, which is no optimum (see `reached_again`)."""
+        """Whether several runs reached the same point, which is no proven optimum."""
         best = self.best()
         if best is None or self.succeeded:
             return False
