@@ -16,7 +16,7 @@ import numpy as np
 from ..base.dataclass import dataclass
 from ..design.choice_list import Value
 from ..evaluation import PreparedDesign
-from . import kkt, nlopt_wrapper, repairs
+from . import kinks, kkt, nlopt_wrapper, repairs
 from .actuator import ActuatorProblem
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import Vector
@@ -163,7 +163,7 @@ def hessian_of(look: Look) -> ScaledHessian | None:
 
 def _settle_quickly(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:
     """Optimise from a few starts if the descent ended before it reached an optimum."""
-    quality = kkt.check(evaluator, evaluator.point(evaluator.space.to_z(x)))
+    quality = kinks.check(evaluator, evaluator.point(evaluator.space.to_z(x)))
     if quality.residual <= SETTLED or not evaluator.space.size:
         return
     seconds = None
