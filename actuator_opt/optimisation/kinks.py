@@ -64,20 +64,12 @@ class Piece:
     parametric : the smooth problem with its parameters; the limits of kinks follow the constraints
     evaluator, point : its evaluator, and the point in question
     quality : optimality conditions at the point
-    kinks : number of kinks
     """
 
     parametric: ParametricProblem
     evaluator: Evaluator
     point: Point
     quality: kkt.KktResidual
-    kinks: int = 0
-
-    @property
-    def pull(self) -> float:
-        """Sum of the kinks' multipliers: 0 if the optimum would not leave this piece anyway."""
-        count = len(self.quality.multipliers) - self.kinks
-        return float(self.quality.multipliers[count:].sum())
 
 
 @dataclass(frozen=True)
@@ -89,6 +81,7 @@ class _Kinks:
     evaluator, z : the problem with kinks, and the coordinates of the point (nf,)
     normals : unit normals of the kinks (k, nf), within a few per cent
     rows : for each kink, the row that it bends most (k,)
+    step : step into a piece
     """
 
     evaluator: Evaluator
@@ -200,8 +193,7 @@ def pieces(
 ) -> list[Piece]:
     """The pieces beside the kinks at a point if they prove it an optimum, else the problem itself.
 
-    The first piece has the least pull, see `Piece`. A point that is an optimum without regard to
-    kinks needs no pieces.
+    A point that is an optimum without regard to kinks needs no pieces.
 
     Parameters
     ----------
@@ -213,23 +205,20 @@ def pieces(
     result = [Piece(parametric, evaluator, point, whole)]
     if whole.residual <= RESIDUAL or not evaluator.exact or not is_met(point):
         return result
-    kinks = _kinks_near(evaluator, point, BESIDE)
-    proven = []
+    kinks, proven = _kinks_near(evaluator, point, BESIDE), []
     for signs in kinks.signs() if kinks else ():
-        piece = _piece(kinks.piece(parametric, signs), point, objective_scale, len(signs))
+        piece = _piece(kinks.piece(parametric, signs), point, objective_scale)
         if not is_met(piece.point) or piece.quality.residual > RESIDUAL:
             return result
         proven.append(piece)
-    return sorted(proven, key=lambda piece: piece.pull) or result
+    return proven or result
 
 
-def _piece(
-    parametric: ParametricProblem, point: Point, objective_scale: float, kinks: int
-) -> Piece:
+def _piece(parametric: ParametricProblem, point: Point, objective_scale: float) -> Piece:
     evaluator = Evaluator(parametric.problem)
     here = evaluator.point(point.z)
     quality = kkt.check(evaluator, here, objective_scale=objective_scale)
-    return Piece(parametric, evaluator, here, quality, kinks)
+    return Piece(parametric, evaluator, here, quality)
 
 
 def check(

@@ -61,6 +61,21 @@ def test_a_vertex_on_a_kink_is_an_optimum():
     assert kkt.check(evaluator, point).residual > 0.1
 
 
+def test_one_side_of_a_kink_may_prove_an_optimum():
+    """Where one value is a limit of its own, it and the other prove the optimum: 1/3 each."""
+
+    def evaluate(x):
+        one, other = 6 - x[0] - 2 * x[1], 6 - 2 * x[0] - x[1]
+        return PointValues(20 - x[0] - x[1], np.stack([one, least(one, other)]))
+
+    problem = box(evaluate, 2, ("one", "corner"))
+    evaluator, point = at(problem, [2.0, 2.0])
+    assert kkt.check(evaluator, point).residual > 0.1
+    quality = kinks.check(evaluator, point)
+    assert quality.residual < 1e-9
+    assert quality.multipliers.sum() == pytest.approx(2 / 3)
+
+
 @pytest.mark.parametrize("n", [2, 5])
 def test_a_smooth_objective_on_a_kink(n):
     """The nearest point to (3, 3, ...) in the corner is (2, 2, 3, ...); multipliers 2/3 each."""

@@ -163,8 +163,11 @@ class ChangedProblems:
         (nf, K).
         """
         results: list[Point | None] = [None] * starts.shape[1]
+        if not results:
+            return results
+        point = self.evaluator.point(point.z)
         first, *others = kinks.pieces(self.parametric, self.evaluator, point)
-        if not others or not results:
+        if not others:
             return results
         valley = valley_at(first.evaluator, first.point)
         smooth = replace(self, parametric=first.parametric, evaluator=first.evaluator)
