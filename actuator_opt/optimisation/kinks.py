@@ -101,13 +101,8 @@ class _Kinks:
             inverse = np.linalg.pinv(self.normals)
         object.__setattr__(self, "inward", inverse)
 
-    def signs(self) -> Iterator[Vector]:
-        """Sides (k,) of the kinks, 1 or -1, for every piece."""
-        for signs in itertools.product((1.0, -1.0), repeat=len(self.rows)):
-            yield np.array(signs)
-
     def piece(self, parametric: ParametricProblem, signs: Vector) -> ParametricProblem:
-        """The smooth problem on the piece with these `signs`."""
+        """The smooth problem on one piece; `signs` (k,), 1 or -1, are its sides of the kinks."""
         problem, m = parametric.problem, len(parametric.problem.constraint_names)
         labels = ("the objective", *problem.constraint_names, *problem.equality_names)
         steps = [self.step * (self.inward @ sides) for sides in (signs, *_flipped(signs))]
@@ -188,6 +183,16 @@ def _kinks_near(evaluator: Evaluator, point: Point, distance: float) -> _Kinks |
     return _Kinks(evaluator, point.z, chosen, np.flatnonzero(used)[rows], step)
 
 
+def _smooth_problems(
+    parametric: ParametricProblem, evaluator: Evaluator, point: Point, distance: float
+) -> Iterator[ParametricProblem]:
+    """The smooth problem on every piece beside the kinks near a point; none without kinks."""
+    kinks = _kinks_near(evaluator, point, distance)
+    if kinks is not None:
+        for signs in itertools.product((1.0, -1.0), repeat=len(kinks.rows)):
+            yield kinks.piece(parametric, np.array(signs))
+
+
 def pieces(
     parametric: ParametricProblem, evaluator: Evaluator, point: Point, objective_scale: float = 0.0
 ) -> list[Piece]:
@@ -205,9 +210,9 @@ def pieces(
     result = [Piece(parametric, evaluator, point, whole)]
     if whole.residual <= RESIDUAL or not evaluator.exact or not is_met(point):
         return result
-    kinks, proven = _kinks_near(evaluator, point, BESIDE), []
-    for signs in kinks.signs() if kinks else ():
-        piece = _piece(kinks.piece(parametric, signs), point, objective_scale)
+    proven = []
+    for problem in _smooth_problems(parametric, evaluator, point, BESIDE):
+        piece = _piece(problem, point, objective_scale)
         if not is_met(piece.point) or piece.quality.residual > RESIDUAL:
             return result
         proven.append(piece)
@@ -262,9 +267,8 @@ def optimum_beside(evaluator: Evaluator, point: Point) -> Point | None:
 
 def _ends(evaluator: Evaluator, point: Point, distance: float) -> Iterator[Point]:
     """The feasible points at which Newton steps end on each piece beside the kinks near a point."""
-    kinks = _kinks_near(evaluator, point, distance)
-    for signs in kinks.signs() if kinks else ():
-        smooth = kinks.piece(ParametricProblem.of(evaluator.problem), signs)
+    parametric = ParametricProblem.of(evaluator.problem)
+    for smooth in _smooth_problems(parametric, evaluator, point, distance):
         beside = Evaluator(smooth.problem)
         end = evaluator.point(kkt.polish(beside, beside.point(point.z), tolerance=1e-10).z)
         if is_met(end):

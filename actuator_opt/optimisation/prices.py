@@ -409,7 +409,8 @@ def prices(
             multipliers = priced.multipliers[piece.evaluator.constraint_count :]
             derivatives = with_bounds(derivatives, evaluator, multipliers)
         pieces.append(LinearOptimum(optimum, derivatives))
-    first, ends = pieces[0], [(None, None)] * len(pieces[0].derivatives.values)
+    first = pieces[0]
+    ends: list[tuple[float | None, float | None]] = [(None, None)] * len(first.derivatives.values)
     if resolve and change:
         valleys = [
             valley_at(evaluator, p) for p in (point, *ladder.other_optima(evaluator, solution))
