@@ -128,6 +128,8 @@ class WarmStart:
         try:
             self._take_gradients(evaluator)
             optimum, feasible = self._stepped(evaluator, self._valleys(evaluator))
+            if optimum is None and feasible is not None:
+                optimum = ladder.optimum_near(evaluator, evaluator.point(feasible))
         except LimitReached:
             return self._interrupted(evaluator), None
         if optimum is not None:

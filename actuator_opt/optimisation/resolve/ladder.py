@@ -248,11 +248,9 @@ def search_near(
             return None
         feasible_z = restored.z
     feasible = changed.point(feasible_z)
-    polished = polish(changed, feasible, iterations=8, tolerance=1e-10)
-    if steps.is_met(polished) and polished.objective <= feasible.objective:
-        polished = kinks.optimum_beside(changed, polished) or polished
-        if _optimal(changed, polished) and _lower(polished, feasible):
-            return polished
+    optimum = optimum_near(changed, feasible)
+    if optimum is not None:
+        return optimum
     further = [p.x for p in (feasible, *starts)]
     for samples in (0, SAMPLES):
         solution = solve(problem, starts=len(further), samples=samples, more_starts=further)
@@ -267,6 +265,16 @@ def search_near(
     if solution.feasible and solution.objective < feasible.objective:
         return point_of(changed, solution)
     return feasible
+
+
+def optimum_near(evaluator: Evaluator, feasible: Point) -> Point | None:
+    """The optimum that Newton steps from a feasible point reach, perhaps on a kink; None if none.
+
+    It is at least as good as the feasible point.
+    """
+    polished = polish(evaluator, feasible, iterations=8, tolerance=1e-10)
+    end = kinks.optimum_beside(evaluator, polished) or polished
+    return end if _optimal(evaluator, end) and _lower(end, feasible) else None
 
 
 def _lower(point: Point, other: Point) -> bool:
