@@ -49,6 +49,9 @@ PARALLEL = 0.99
 MOST = 3
 """Maximum number of kinks at a point (our choice): they divide its neighbourhood into 8 pieces."""
 
+EXACT = 1e-9
+"""Measure of optimality at which Newton steps on a piece end (our choice)."""
+
 WEIGHTS = (3.0, -3.0, 1.0)
 """Factors of the values after one, two and three steps, which extrapolate to no step."""
 
@@ -270,6 +273,6 @@ def _ends(evaluator: Evaluator, point: Point, distance: float) -> Iterator[Point
     parametric = ParametricProblem.of(evaluator.problem)
     for smooth in _smooth_problems(parametric, evaluator, point, distance):
         beside = Evaluator(smooth.problem)
-        end = evaluator.point(kkt.polish(beside, beside.point(point.z), tolerance=1e-10).z)
+        end = evaluator.point(kkt.polish(beside, beside.point(point.z), tolerance=EXACT).z)
         if is_met(end):
             yield end
