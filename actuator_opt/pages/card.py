@@ -707,6 +707,8 @@ def _doubts(subject: Evaluation | Optimisation) -> Iterator[Block]:
         parts.append(count_words(len(tight)))
     for name, value in evaluation.below_one.items():
         parts.append(f"{term_of(name)} factor {text.number(value, 3)} without a limit")
+    if life := report.limited_life(evaluation):
+        parts.append(life)
     if results := counts["extrapolated"] + counts["extrapolated_models"]:
         parts.append(f"{_count(results, 'result')} extrapolated (!)")
     skipped = sum(check.status == "not_checked" for check in evaluation.checks)
