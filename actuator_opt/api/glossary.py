@@ -23,7 +23,7 @@ metric | A result that an evaluation computes, such as stiffness_min. It has a v
 governing value | Value of a metric that is compared with its limit: the largest if a maximum is required or the metric is minimised, the smallest if a minimum is required or it is maximised; else the worst by the table of metrics. | our choice | metric, margin
 requirement | A smallest (min) or largest (max) value of a metric that the design must have in every load case. `optimise` meets all requirements; their prices say what each costs. | our choice | metric, margin, price, check
 check | A line of the professional check list: a metric with a usual limit and its source. `optimise` meets all checks except advice and waived ones. | our choice | requirement, waiver
-advice | A line of the check list that is shown and gives a warning, but does not bind the optimiser. A requirement on the same metric binds it; a waiver accepts it. | our choice | check, waiver, requirement
+advice | A line of the check list that gives a warning if it is missed, but that the optimiser need not meet. A requirement on the same metric makes it a limit; a waiver accepts the miss. | our choice | check, waiver, requirement
 set / unset | What a scenario changes in its design, by PATH. The list "unset: [cushion]" removes keys and blocks, which then take their defaults; after that "set" gives values. On the command line: --unset and --set. | our choice | PATH
 waiver | A check that does not apply, with the reason, under `waivers` in the design file. Reports print it. | our choice | check
 load case | A single state that the actuator must carry: direction, force or joint torque, speed, position, temperature, side load. Every requirement holds in every load case. | our choice | load_cases, requirement

@@ -288,8 +288,8 @@ def _limit_table(
         shown = text.metric(name).text(limit)
         blocks.append(
             _line(
-                f'advice does not bind: requirements.{name}.{sense}="{shown}" binds it, '
-                f"waivers.{name} with a reason accepts it"
+                f'advice is not a limit; to enforce it: requirements.{name}.{sense}="{shown}"; '
+                f"to accept the miss: waivers.{name} with a reason"
             )
         )
     hidden = rows[most:]

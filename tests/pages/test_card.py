@@ -135,6 +135,21 @@ def test_a_good_verdict_states_every_doubt():
     assert (f"{tight} limit" in said) == bool(tight)
 
 
+def test_advice_says_how_to_enforce_it_and_how_to_accept_the_miss():
+    """Both ways as printed: the requirement is then missed, and the waiver leaves no advice."""
+    start = ao.start()
+    shown = text(ao.evaluate(start), width=200)
+    path, limit, waiver = re.search(
+        r'to enforce it: (\S+)="(.*)"; to accept the miss: (\S+) with a reason', shown
+    ).groups()
+    enforced = ao.evaluate(start.changed({path: limit}))
+    assert not enforced.met
+    assert [row.path for row in enforced.requirements if not row.met] == [path]
+    accepted = ao.evaluate(start.changed({waiver: "a thin ring suffices"}))
+    assert accepted.met
+    assert "advice" not in text(accepted, width=200)
+
+
 @pytest.mark.parametrize(
     ("name", "changes", "cycles"),
     [
