@@ -24,6 +24,7 @@ governing value | Value of a metric that is compared with its limit: the largest
 requirement | A smallest (min) or largest (max) value of a metric that the design must have in every load case. `optimise` meets all requirements; their prices say what each costs. | our choice | metric, margin, price, check
 check | A line of the professional check list: a metric with a usual limit and its source. `optimise` meets all checks except advice and waived ones. | our choice | requirement, waiver
 advice | A line of the check list that gives a warning if it is missed, but that the optimiser need not meet. A requirement on the same metric makes it a limit; a waiver accepts the miss. | our choice | check, waiver, requirement
+scenario | A file that simulates a design: the valve signal or motion over time, the load, and what to change in the design. `init --scenario DESIGN` writes one, `simulate` runs it. | our choice | set, load case, duty cycle
 set / unset | What a scenario changes in its design, by PATH. The list "unset: [cushion]" removes keys and blocks, which then take their defaults; after that "set" gives values. On the command line: --unset and --set. | our choice | PATH
 waiver | A check that does not apply, with the reason, under `waivers` in the design file. Reports print it. | our choice | check
 load case | A single state that the actuator must carry: direction, force or joint torque, speed, position, temperature, side load. Every requirement holds in every load case. | our choice | load_cases, requirement
