@@ -41,6 +41,9 @@ The start lies on the straight line through both optima, beyond the other optimu
 the distance between them. The ridge that separates them often moves as fast as they do, so a start
 on the other optimum itself could be on the wrong side of the ridge."""
 
+BETWEEN = np.arange(1, 8) / 8
+"""Designs tried between two equally good optima, as shares of the distance (our choice)."""
+
 SAMPLES = 1024
 """Number of points of the sweep for a feasible problem whose optimum is not yet known."""
 
@@ -196,7 +199,11 @@ def _better(point: Point | None, other: Point | None) -> Point | None:
 
 
 def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
-    """The local optima that a search reached, without the best of them."""
+    """The local optima that a search reached, each of another valley, without the best of them.
+
+    Where a variable does not matter, equally good optima lie side by side in one valley: they are
+    joined by a straight line of designs that are as good. Only one of them counts.
+    """
     points = [
         optimum.x
         for optimum in solution.optima
@@ -204,7 +211,25 @@ def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
         and optimum.residual <= steps.RESIDUAL
         and not np.array_equal(optimum.x, solution.x)
     ]
-    return [evaluator.point(evaluator.space.to_z(x)) for x in points]
+    others: list[Point] = []
+    valleys = [point_of(evaluator, solution)]
+    for x in points:
+        point = evaluator.point(evaluator.space.to_z(x))
+        if not any(_joined(evaluator, point, valley) for valley in valleys):
+            valleys.append(point)
+            others.append(point)
+    return others
+
+
+def _joined(evaluator: Evaluator, first: Point, second: Point) -> bool:
+    """Whether all designs tried between two equally good ones meet the limits and are as good."""
+    room = BETTER * abs(first.objective)
+    if abs(first.objective - second.objective) > room:
+        return False
+    z = first.z[:, None] + np.multiply.outer(second.z - first.z, BETWEEN)
+    rows = evaluator.batch(z)
+    met = evaluator.violations(rows, "worst") <= MET
+    return bool((met & (np.abs(rows[0] - first.objective) <= room)).all())
 
 
 def point_of(evaluator: Evaluator, solution: Solution) -> Point:
