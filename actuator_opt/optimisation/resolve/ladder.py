@@ -129,7 +129,9 @@ def resolve_batch(
     for valley in valleys[1:]:
         z = valley.point.z
         start = np.clip(z + BEYOND * (z - point.z), space.lower, space.upper)
-        ends.descend(valley, dict(enumerate(changed.restore(start))))
+        numbers = ends.in_reach_of(valley)
+        restored = changed.subset(numbers).restore(start)
+        ends.descend(valley, dict(zip(numbers, restored, strict=True)))
     single = len(optima) == 1 and len(valleys) == 1  # there are no other optima to exchange
     for _ in range(0 if single else ROUNDS):
         improved = ends.better_designs([valley.point for valley in valleys])
@@ -147,6 +149,7 @@ class _Ends:
     optima: list[Point | None]
     best_feasible: list[Point | None]
     feasible: dict[int, Vector] = field(default_factory=dict)
+    compared: list[Point] = field(default_factory=list)
 
     def descend(self, valley: Valley, starts: Mapping[int, Vector | None]) -> None:
         """Run a descent for each problem that has a start, and store the improved results."""
@@ -161,9 +164,31 @@ class _Ends:
             self.optima[i] = _better(self.optima[i], optimum)
             self.best_feasible[i] = _better(self.best_feasible[i], stop)
 
+    def in_reach_of(self, valley: Valley) -> list[int]:
+        """Numbers of the problems whose optimum in a valley may be better than the one reached.
+
+        The Lagrangian at the valley's optimum, with the multipliers there, estimates the optimum in
+        this valley. It is a lower bound, to second order of the change, where objective and limits
+        are convex (weak duality, [NocedalWright2006] section 12.9).
+        """
+        if valley.prices is None:
+            return list(range(len(self.optima)))
+        rows = self.changed.margins_at([valley.point])[:, 0]
+        multipliers = valley.scale * valley.prices[: valley.rows]
+        estimates = rows[0] - multipliers @ rows[1 : 1 + valley.rows]
+        numbers = zip(estimates, self.optima, strict=True)
+        return [i for i, (estimate, best) in enumerate(numbers) if not estimate >= _beaten(best)]
+
     def better_designs(self, valleys: Sequence[Point]) -> dict[int, Vector]:
-        """For each problem that optima of other problems improve, the best of these optima."""
-        points = [*valleys, *(optimum for optimum in self.optima if optimum is not None)]
+        """For each problem that optima of other problems improve, the best of these optima.
+
+        Optima that were compared before are left out: no problem has become worse since.
+        """
+        reached = [*valleys, *(optimum for optimum in self.optima if optimum is not None)]
+        points = [point for point in reached if not any(point is x for x in self.compared)]
+        self.compared += points
+        if not points:
+            return {}
         rows = self.changed.margins_at(points)
         missed = self.changed.evaluator.violations(rows.reshape(len(rows), -1), "worst")
         missed = missed.reshape(rows.shape[1:])
