@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, Unpack, get_args
 
 from ..base.arguments import SetValues, guarded
 from ..base.dataclass import dataclass
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ..design.model import Design
     from ..evaluation import Evaluation
     from ..metrics.documentation import ModelDocumentation
+    from ..metrics.metric_row import MetricRow
     from ..rendering.console import Style
     from .actuator import Actuator, Plugins, Result
 
@@ -210,12 +211,10 @@ def _of_metric(entry: Entry, actuator: Actuator | None) -> Explanation:
         if row.least is not None:
             source = f"limit: {row.least.source}"
         if documented := [_documented(name) for name in names if name != CRITERION]:
-            model = ", ".join(d.name for d in documented)
+            model = ", ".join(_by_wall(row, names))
             definition = f"{entry.phrase}: {documented[0].summary}"
             source = "; ".join(dict.fromkeys(d.reference for d in documented))
             validity = documented[0].valid.removesuffix(".")
-        if CRITERION in names:
-            model += ", failure criterion of barrel.criterion"
         if row.check is not None:
             related.append(f"check {row.check.number}")
         related += _akin(entry.name)
@@ -232,6 +231,20 @@ def _of_metric(entry: Entry, actuator: Actuator | None) -> Explanation:
         replace(entry, value=value), definition, _asked(entry, value, actuator), model, source,
         validity, tuple(related), now, movers,
     )  # fmt: skip
+
+
+def _by_wall(row: MetricRow, names: Iterable[str]) -> Iterator[str]:
+    """The models of a metric, each with the wall models (`barrel.model`) for which it applies."""
+    from ..metrics.metric_row import CRITERION, Wall
+
+    walls: dict[str, str | None] = {"isotropic": row.model}
+    walls |= {wall: row.by_wall.get(wall, row.model) for wall in get_args(Wall)}
+    head = "barrel.model "
+    for name in names:
+        words = "failure criterion of barrel.criterion" if name == CRITERION else name
+        where = " or ".join(wall for wall, model in walls.items() if model == name)
+        yield f"{words} ({head}{where})" if row.by_wall else words
+        head = ""
 
 
 def _akin(name: str) -> list[str]:

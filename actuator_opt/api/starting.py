@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from math import ceil, pi, sqrt
 
 from ..base import units
@@ -18,18 +19,17 @@ from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError, UsageError, remedy, shown
 from ..base.quantities import INPUTS, Quantity
 from ..design import Design, standard_sizes, with_values
-from ..design.housings import extrusion_tables
 from ..design.kinds import Text, ValueFault, read_quantity
 from ..design.paths import quantity_of
 from ..design.writer import exact_text, scalar, to_yaml
 from ..evaluation import evaluate, prepare
 from ..evaluation.build import limits_of, margins_many
-from ..evaluation.rings import EXTRUSION_TABLE
 from ..metrics import METRICS
-from ..models.gland import extrusion_gap_limit, extrusion_pressure_end
 from ..optimisation.result import Optimisation
 from ..optimisation.solution import MET
 from .actuator import Actuator, read
+from .starting_limits import unsuitable
+from .starting_parts import BOLTS, ROD_THREADS, compound_of, section_of, thread_of
 
 ASKED: Mapping[str, tuple[Quantity, str]] = {
     "push": (INPUTS["force"], "5 kN"),
@@ -123,6 +123,10 @@ BURST, BUCKLING = 4.0, 3.5
 SPEED = 0.1
 """Default piston speed [m/s], at which the friction coefficients of the seals apply."""
 
+_USUAL = {key: (quantity, read_quantity(text, quantity)) for key, (quantity, text) in ASKED.items()}
+_USUAL |= {"speed": (ADDED["speed"], SPEED), "stiffness": (ADDED["stiffness"], 1e6)}
+"""A usual number of each answer, for which there are first sizes."""
+
 PORT_SPEED = 4.0
 """Oil speed in the ports, related to the bore [m/s]: half the limit of the check list."""
 
@@ -134,9 +138,6 @@ CLEARANCE = 30e-6
 GAP_RATIO = 2.5
 """Gap that the seals must bear, divided by the clearance: the bore grows. Our choice."""
 
-SECTION = 1 / 15
-"""Largest section of a ring, divided by bore or rod diameter. Our choice: 1.78 mm up to 39 mm."""
-
 RESERVE = 0.01
 """Margin that the solved start keeps beyond each limit, so that round numbers still meet it."""
 ROUNDING = 5e-5
@@ -145,20 +146,6 @@ LIFE = 0.1
 """The same for `cycle_life`, which falls with a high power of the stress."""
 STARTS = 4
 """Number of local searches; more than four were no better for twelve random loads."""
-
-ROD_THREADS = (
-    (4, 0.5), (5, 0.5), (6, 0.75), (8, 1), (10, 1.25), (12, 1.25), (14, 1.5), (16, 1.5), (18, 1.5),
-    (20, 1.5), (22, 1.5), (24, 2), (27, 2), (30, 2), (33, 2), (36, 2), (42, 2), (48, 2), (56, 2),
-    (64, 3), (72, 3), (80, 3), (90, 3), (100, 3), (110, 3), (125, 4), (140, 4), (160, 4), (180, 4),
-    (200, 4), (220, 4), (250, 6), (280, 6),
-)  # fmt: skip
-"""Threads of rod ends, diameter and pitch [mm]: ISO 4395, quoted from memory, unverified."""
-BOLTS = (
-    (3, 0.5), (4, 0.7), (5, 0.8), (6, 1), (8, 1.25), (10, 1.5), (12, 1.75), (16, 2), (20, 2.5),
-    (24, 3), (30, 3.5), (36, 4), (42, 4.5), (48, 5), (56, 5.5), (64, 6), (72, 6), (80, 6), (90, 6),
-    (100, 6),
-)  # fmt: skip
-"""Coarse threads of tie rods, diameter and pitch [mm]: ISO 261, quoted from memory, unverified."""
 
 RODS = 6
 """Number of tie rods, as in designs/aerospace.yaml."""
@@ -264,7 +251,7 @@ def start(
 
     Raises
     ------
-    UsageError : a value is unsuitable, or the bore would be larger than 600 mm
+    UsageError : a value is unsuitable, or no first sizes suit all values
     """
     stated = {
         "push": push, "pull": pull, "stroke": stroke, "pressure": pressure, "goal": goal,
@@ -333,19 +320,28 @@ def _word(key: str, value: str, prefix: str) -> str:
     return word
 
 
-def solved_start(answers: StartAnswers, name: str = "my actuator") -> Start:
-    """A start design with its verdict; `name` and faults as for `start`."""
+def solved_start(answers: StartAnswers, name: str = "my actuator", prefix: str = "") -> Start:
+    """A start design with its verdict; `name` and faults as for `start`.
+
+    A fault names an answer as ``prefix + key``.
+    """
     try:
         title = Text().validate(name)
     except ValueFault as fault:
         raise UsageError(Diagnostic(f"name: {fault.message}", fault.remedy)) from None
     if answers.push == 0 and answers.pull == 0:
         raise UsageError(Diagnostic("push and pull: both are 0", "state a force"))
+    if _fault(answers, {}):
+        numbers = {key: getattr(answers, key) for key in _USUAL}
+        stated = {key: number for key, number in numbers.items() if number is not None}
+        raise UsageError(unsuitable(stated, _USUAL, partial(_fault, answers), prefix))
     sizes = _first_sizes(answers)
     light = _solved(replace(answers, goal="mass"), sizes, title)
     if not light.met and answers.stiffness is not None:
-        sizes = _first_sizes(replace(answers, stiffness=STIFFER * answers.stiffness))
-        light = _solved(replace(answers, goal="mass"), sizes, title)
+        stiffer = {"stiffness": STIFFER * answers.stiffness}
+        if not _fault(answers, stiffer):
+            sizes = _first_sizes(_changed(answers, stiffer))
+            light = _solved(replace(answers, goal="mass"), sizes, title)
     if answers.goal == "mass" or not light.met:
         return light
     return _solved(answers, sizes, title, light.actuator.design)
@@ -355,9 +351,8 @@ def _solved(
     answers: StartAnswers, sizes: _Sizes, title: str, lightest: Design | None = None
 ) -> Start:
     """Solve the template, with stops in the cylinder if possible, else outside it."""
-    stops = ("external",) if sizes.stop_outside else ("internal", "external")
     limit = None if lightest is None else HEAVIER * _mass(lightest)
-    templates = [read(_text(answers, sizes, title, stop, limit)) for stop in stops]
+    templates = [read(_text(answers, sizes, title, stop, limit)) for stop in sizes.stops]
     if lightest is not None:
         templates = [
             replace(x, design=with_values(x.design, _values(lightest, x.design))) for x in templates
@@ -452,6 +447,24 @@ def _rounded(design: Design, finer: int) -> dict[str, float]:
 # --- first sizes ----------------------------------------------------------------------------
 
 
+def _changed(answers: StartAnswers, numbers: Mapping[str, float]) -> StartAnswers:
+    """The answers with other numbers."""
+    return replace(answers, **numbers)  # type: ignore[arg-type]
+
+
+def _fault(answers: StartAnswers, numbers: Mapping[str, float]) -> str:
+    """The fault of the first sizes for answers with other numbers; empty if they make a file."""
+    try:
+        changed = _changed(answers, numbers)
+        sizes = _first_sizes(changed)
+        for stop in sizes.stops:
+            read(_text(changed, sizes, "start", stop, None))
+    except InputError as error:
+        first = error.diagnostics[0]
+        return ": ".join(filter(None, (first.path, first.message)))
+    return ""
+
+
 @dataclass(frozen=True, slots=True)
 class _Sizes:
     """First sizes of the parts (SI)."""
@@ -461,7 +474,7 @@ class _Sizes:
     wall: float
     layers: tuple[float, ...]
     clearance: float
-    stop_outside: bool
+    stops: tuple[str, ...]
     rod_thread: tuple[float, float]
     stall: float
     """Force of the supply pressure on the piston, N."""
@@ -474,7 +487,7 @@ class _Sizes:
     @property
     def section(self) -> float:
         """Section of the piston's ring."""
-        return _section(self.bore)
+        return section_of(self.bore)
 
     @property
     def piston(self) -> float:
@@ -506,20 +519,17 @@ def _first_sizes(answers: StartAnswers) -> _Sizes:
         inertia /= pi**2 * _ROD_MODULUS
         column = (64 * inertia / (pi * (1 - _HOLLOW**4))) ** 0.25
         tension = sqrt(4 * 2.2 * answers.pull / (pi * 0.9 * _ROD_YIELD * (1 - _HOLLOW**2)))
-        rod = max(6e-3, column, tension)
+        rod += 0.5 * (max(6e-3, column, tension) - rod)
         needed = max(answers.push / pressure, answers.pull / (pressure - back)) * 1.06
         needed = max(needed, (answers.stiffness or 0.0) * answers.stroke / _OIL)
         beside = answers.pull if answers.type == "differential" else max(answers.pull, answers.push)
         pulled = 1.06 * beside / (pressure - back) + pi / 4 * rod**2
-        bore += 0.5 * (max(sqrt(4 / pi * max(needed, pulled)), rod + 8e-3) - bore)
+        least = rod + max(8e-3, 2 * section_of(rod) + 2e-3)
+        bore += 0.5 * (max(sqrt(4 / pi * max(needed, pulled)), least) - bore)
+    if rod >= bore:
+        raise InputError(f"rod ({1e3 * rod:.0f} mm) too thick for the bore ({1e3 * bore:.0f} mm)")
     if bore > LARGEST:
-        raise UsageError(
-            Diagnostic(
-                f"push and pull need a bore of {1e3 * bore:.0f} mm at {pressure / 1e5:.4g} bar, "
-                f"more than {1e3 * LARGEST:.0f} mm",
-                "raise the pressure, or lower force or stroke",
-            )
-        )
+        raise InputError(f"the bore would be {1e3 * bore:.0f} mm, more than {1e3 * LARGEST:.0f} mm")
     area, ring = _pushed(answers, bore, rod), pi / 4 * (bore**2 - rod**2)
     peak = max(
         2 * (pressure * area - back * ring - answers.push) / ring,
@@ -530,15 +540,14 @@ def _first_sizes(answers: StartAnswers) -> _Sizes:
     if wall.joint == "thread":  # metal that must remain under the thread
         thickness = max(thickness, 1.1e-3 + 0.62 * max(1e-3, 0.02 * bore))
     layers = tuple(max(share * thickness, 0.6e-3) for _, _, share in wall.layers)
-    thread = _thread(ROD_THREADS, 4 / pi * 2 * pressure * area / _ROD_YIELD)
-    outside = peak > 1.35 * pressure
+    thread = thread_of(ROD_THREADS, 4 / pi * 2 * pressure * area / _ROD_YIELD)
     return _Sizes(
         bore,
         max(rod, thread[0]),
         thickness,
         layers,
         max(CLEARANCE, wall.clearance * bore),
-        outside,
+        ("external",) if peak > 1.35 * pressure else ("internal", "external"),
         thread,
         pressure * area,
     )
@@ -546,34 +555,8 @@ def _first_sizes(answers: StartAnswers) -> _Sizes:
 
 def _pushed(answers: StartAnswers, bore: float, rod: float) -> float:
     """Area of the chamber that pushes: the piston's, or the annulus around a second rod."""
-    return pi / 4 * (bore**2 - (rod**2 if answers.type == "double_rod" else 0.0))
-
-
-def _thread(sizes: Sequence[tuple[float, float]], square: float) -> tuple[float, float]:
-    """The first thread (diameter, pitch in m) whose root diameter squared reaches `square` [m^2].
-
-    The root diameter is d - 1.2268 P [ISO68-1].
-    """
-    for diameter, pitch in sizes:
-        if (1e-3 * (diameter - 1.2268 * pitch)) ** 2 >= square:
-            break
-    return 1e-3 * diameter, 1e-3 * pitch
-
-
-def _section(diameter: float) -> float:
-    """Section of the ring for a bore or rod: the largest tabulated one of at most `SECTION`."""
-    sections = standard_sizes.o_ring_sections("as568")
-    return max((x for x in sections if x <= SECTION * diameter), default=sections[0])
-
-
-def _compound(pressure: float, needed: float) -> tuple[str, bool]:
-    """The softest O-ring that bears a gap at a pressure, and whether it needs back-up rings."""
-    table = extrusion_tables()[EXTRUSION_TABLE].rows
-    for compound, hardness in (("nbr_70", 70.0), ("nbr_90", 90.0)):
-        gap = extrusion_gap_limit(hardness=hardness, pressure=pressure, table=table)
-        if gap >= needed and pressure <= extrusion_pressure_end(hardness=hardness, table=table):
-            return compound, False
-    return compound, True
+    rods = rod**2 if answers.type == "double_rod" else 0.0
+    return pi / 4 * max(bore**2 - rods, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -618,7 +601,7 @@ def _screwed_plugs(sizes: _Sizes) -> _Joint:
 def _tie_rods(sizes: _Sizes) -> _Joint:
     """Rods of class 12.9 between the caps, whose preload proof pressure does not take away."""
     stall = sizes.stall
-    diameter, pitch = _thread(BOLTS, 4 / pi * 1.2 * BURST * stall / RODS / _BOLT_YIELD)
+    diameter, pitch = thread_of(BOLTS, 4 / pi * 1.2 * BURST * stall / RODS / _BOLT_YIELD)
     return _Joint(
         f"{{type: tie_rods, material: steel_bolt_12_9, count: {RODS}, "
         f"length: {_mm(1.2 * diameter)},\n"
@@ -626,7 +609,7 @@ def _tie_rods(sizes: _Sizes) -> _Joint:
         f"thread: {{diameter: {_mm(diameter)}, pitch: {_mm(pitch)}}}}}",
         (
             f"  retention.preload: {{lower: {0.5e-3 * stall:.2f} kN, "
-            f"upper: {20e-3 * stall:.2f} kN}}",
+            f"upper: {min(20e-3 * stall, 1e-3 * INPUTS['force'].upper):.2f} kN}}",
         ),
     )
 
@@ -676,6 +659,10 @@ variables:
 @bounds@
 """
 """The file; names between @ are replaced."""
+
+
+_THICKEST = INPUTS["wall_thickness"].upper
+"""Largest valid thickness, m."""
 
 
 def _mm(value: float) -> str:
@@ -759,25 +746,27 @@ def _part_bounds(wall: StartWall, sizes: _Sizes) -> list[str]:
     bounds = [_bounds("cylinder.bore", bore / 1.4, 1.4 * bore)]
     for index, (layer, thickness) in enumerate(zip(wall.layers, sizes.layers, strict=True)):
         least = 0.2e-3 if layer[1] else wall.thinnest
-        bounds.append(_bounds(f"barrel.layup[{index}].thickness", least, 3 * thickness + 2e-3))
+        bounds.append(
+            _bounds(f"barrel.layup[{index}].thickness", least, min(3 * thickness + 2e-3, _THICKEST))
+        )
     return [
         *bounds,
         _bounds("rod.outer_diameter", max(sizes.rod_thread[0], rod / 1.5), 1.5 * rod),
         _bounds("rod.inner_diameter", 1e-3, 1.4 * rod),
         _bounds("piston.length", sizes.piston - 1e-3, longest),
         _bounds("head.length", sizes.piston - 1e-3, longest),
-        _bounds("caps.thickness", 1e-3, 0.5 * bore + 2e-3),
+        _bounds("caps.thickness", 1e-3, min(0.5 * bore + 2e-3, _THICKEST)),
         *(f"  seals.{place}.squeeze: {{lower: 8 %, upper: 25 %}}" for place in ("piston", "rod")),
-        _bounds("clevis.pin_diameter", sizes.pin / 2, 4 * sizes.pin),
+        _bounds("clevis.pin_diameter", sizes.pin / 2, min(4 * sizes.pin, INPUTS["diameter"].upper)),
     ]
 
 
 def _seals(answers: StartAnswers, sizes: _Sizes) -> list[str]:
     """O-rings of piston, rod and ends, with back-up rings where their gap needs them."""
-    compound, back_up = _compound(answers.pressure, GAP_RATIO * sizes.clearance)
+    compound, back_up = compound_of(answers.pressure, GAP_RATIO * sizes.clearance)
     lines = []
     for place, diameter, rings in (("piston", sizes.bore, "both"), ("rod", sizes.rod, "one")):
-        section = _section(diameter)
+        section = section_of(diameter)
         line = (
             f"  {place}: {{type: o_ring, compound: {compound}, section: {_mm(section)}, "
             "squeeze: 14 %, tolerance: 0.05 mm"

@@ -149,6 +149,45 @@ def together(values: Sequence[Array], axis: int = 0) -> Array:
     return xp.stack(values, axis=axis)
 
 
+def group_width(points: Array) -> int | None:
+    """Size of the groups of neighbouring columns with equal real parts; None if sizes differ.
+
+    >>> group_width(np.array([[1 + 1j, 1 + 0j, 2 + 0j, 2 + 1j]]))
+    2
+    """
+    sizes = np.diff(np.append(group_starts(points), points.shape[1]))
+    return int(sizes[0]) if len(sizes) and (sizes == sizes[0]).all() else None
+
+
+def group_starts(points: Array) -> Array:
+    """First columns of the groups of neighbouring columns with equal real parts."""
+    values = points.real
+    new = np.append(True, (values[:, 1:] != values[:, :-1]).any(axis=0))
+    return np.flatnonzero(new)
+
+
+def duals_of(points: Array, width: int) -> Array:
+    """Values and slopes (rows, groups, 1 + width) of complex columns (rows, groups * width).
+
+    The columns of a group have equal real parts; each is a complex step of size `STEP` in one
+    direction.
+    """
+    columns = points.reshape(len(points), -1, width)
+    duals = np.empty((*columns.shape[:2], 1 + width))
+    duals[:, :, 0], duals[:, :, 1:] = columns.real[:, :, 0], columns.imag
+    duals[:, :, 1:] /= STEP
+    return duals
+
+
+def complexed(duals: Array) -> Array:
+    """Complex columns (rows, groups * width) of values and slopes (rows, groups, 1 + width)."""
+    rows, groups, size = duals.shape
+    columns = np.empty((rows, groups, size - 1), dtype=complex)
+    columns.real = duals[:, :, :1]
+    np.multiply(duals[:, :, 1:], STEP, out=columns.imag)
+    return columns.reshape(rows, -1)
+
+
 def finished(active: Array) -> bool:
     """Whether a loop may end because none of its elements is active.
 

@@ -263,7 +263,7 @@ def _solved(
     """The solved start design named by `title`, with its cycle."""
     from ..api.starting import solved_start
 
-    start: Start = job.run(solved_start, answers, **title)
+    start: Start = job.run(solved_start, answers, prefix="--", **title)
     return start if cycle is None else cycle.added_to(start)
 
 

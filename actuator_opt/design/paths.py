@@ -205,10 +205,10 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
             quantity = quantity_of_entry(last, target.quantity)
         return Target(f"{head}.{target.path}.{last}", (head, target.path, last), quantity)
     if head == "requirements":
-        if last not in _LIMITS or not name:
-            raise ValueFault(f"{path}: unknown PATH", f"end it with .{' or .'.join(_LIMITS)}")
         allowed: Mapping[str, Quantity] = metrics
-        key = name
+        key = name or last
+        if last not in _LIMITS and (name or split_case(key)[0] in allowed):
+            raise ValueFault(f"{path}: unknown PATH", f"end it with .{' or .'.join(_LIMITS)}")
     else:
         allowed, key = quantities.MATERIAL_PROPERTIES, last
         if not name:
@@ -220,7 +220,24 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
 
 
 def _not_a_value(path: str, below: Sequence[str]) -> ValueFault:
-    return ValueFault(f"{path}: names a block, not a value", f"add one of .{', .'.join(below[:8])}")
+    limit = _limit_of(path)
+    remedy = f"add one of .{', .'.join(below[:8])}" + (f"; for a limit: {limit}" if limit else "")
+    return ValueFault(f"{path}: names a block, not a value", remedy)
+
+
+def _limit_of(path: str) -> str | None:
+    """PATH of the limit of a metric, which a text gives by its key or its words in tables.
+
+    >>> _limit_of("stiffness"), _limit_of("stiffness_min.max"), _limit_of("cylinder.bore")
+    ('requirements.stiffness_min.min', 'requirements.stiffness_min.max', None)
+    """
+    name, _, side = path.rpartition(".")
+    if side not in _LIMITS:
+        name, side = path, ""
+    for metric, quantity in METRICS.items():
+        if name == metric or name.replace("_", " ") == term_of(metric):
+            return f"requirements.{metric}.{side or quantity.worst}"
+    return None
 
 
 def _limits(tree: Any) -> dict[str, str]:
@@ -235,7 +252,12 @@ def _limits(tree: Any) -> dict[str, str]:
 
 
 def _no_such(path: str, candidates: Mapping[str, str]) -> ValueFault:
-    return ValueFault(f"{path}: unknown PATH", errors.remedy(path, candidates, 6))
+    remedy, limit = errors.remedy(path, candidates, 6), _limit_of(path) if candidates else None
+    if limit is not None and f'"{limit}"' not in remedy:
+        near = remedy.startswith("did you mean ")
+        others = f" or {remedy.removeprefix('did you mean ')}" if near else "?"
+        remedy = f'did you mean "{limit}"{others}'
+    return ValueFault(f"{path}: unknown PATH", remedy)
 
 
 def canonical(path: str, design: Design) -> str:

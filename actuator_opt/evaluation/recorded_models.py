@@ -14,14 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from ..base.numeric import Array, namespace
+from ..base.numeric import Array, complexed, duals_of, group_width, namespace
 from ..base.symbolic.program import Program
 from ..base.symbolic.program_store import Recording
 from ..base.symbolic.recorded import RecordedFunction
 from ..design.structure import leaves, number_of
 from . import kernel
 from .build import Many, many, names_of_metrics, rows_of_many
-from .duty_cycles.results import CycleModels, width_of
+from .duty_cycles.results import CycleModels
 from .kernel import PreparedDesign
 from .limits import LimitRow
 
@@ -135,11 +135,39 @@ class RecordedWithDuty(RecordedFunction):
 
     def __call__(self, points: Array) -> Array:
         """Results (rows, k) at points (inputs, k); results of the duty cycles are computed here."""
+        if not self.reason and self.recording is None:
+            self._record(self.present)  # it tells which results are read
         before = self.recording
+        if before is not None and np.iscomplexobj(points):
+            chained = self._chained(points)
+            if chained is not None:
+                return chained
         rows = super().__call__(self._with_results(points))
         if before is not None and self.recording is not before:  # it may want other results
             return super().__call__(self._with_results(points))
         return rows
+
+    def _chained(self, points: Array) -> Array | None:
+        """Results at complex points by the two recordings and the cycles between them.
+
+        None if a point takes another branch, or if groups of directions differ in size.
+        """
+        width = group_width(points)
+        if not width:
+            return None
+        last = self._count + self._width
+        variables, others = (
+            duals_of(part, width) for part in (points[: self._count], points[last:])
+        )
+        inputs = np.concatenate([variables, others])
+        own, seeds = inputs[:, :, 0].T, inputs[:, :, 1:].transpose(1, 0, 2)
+        numbers = self._numbers.duals(np.empty((1, 0)), own, seeds)
+        results = self._models.duals(numbers.transpose(1, 0, 2), self._used)
+        found, holds = self._run(np.concatenate([variables, results, others]))
+        if not holds.all():
+            return None
+        self.points += len(holds)
+        return complexed(found)
 
     def _complete(self, points: Array, rows: Array, holds: Array) -> None:
         missing = ~holds
@@ -169,7 +197,7 @@ class RecordedWithDuty(RecordedFunction):
         count, last = self._count, self._count + self._width
         variables, others = points[:count], points[last:]
         known = variables if len(points) <= last else np.concatenate([variables, others])
-        width = width_of(known) if np.iscomplexobj(known) else 1
+        width = group_width(known) if np.iscomplexobj(known) else None
         results = self._models(self._numbers(known), width, None if every else self._used)
         return np.concatenate([variables, results, others])
 

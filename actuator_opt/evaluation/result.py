@@ -411,6 +411,10 @@ class Outline:
         return (1,) if self.bars % 2 else (1, -1)
 
 
+_FATIGUE = ("fatigue_factor", "cycle_life")
+"""Metrics whose requirement states how long the metal parts must last."""
+
+
 @dataclass(frozen=True, slots=True)
 class Evaluation(Displayed):
     """Complete results of a design: metrics, requirements, checks, drawing, and sources."""
@@ -525,7 +529,7 @@ class Evaluation(Displayed):
     def below_one(self) -> dict[str, float]:
         """Factors below 1, of strength by load, for which neither file nor check has a limit.
 
-        The fatigue factor is left out: it is that of endless life, and `cycle_life` has a limit.
+        The fatigue factor is left out: it is that of endless life (see `limited_life`).
         """
         factors = {}
         for check in self.checks:
@@ -539,6 +543,22 @@ class Evaluation(Displayed):
             if metric.quantity.worst == "min" and metric.value < 1:
                 factors[name] = metric.value
         return factors
+
+    @property
+    def limited_life(self) -> float | None:
+        """Pressure cycles that the metal parts last, if that is not endless and nobody asked.
+
+        The check list asks for some cycles in any case. None if the fatigue strength bears endless
+        cycles, if a requirement limits fatigue or life, or if duty cycles state the life.
+        """
+        factor, life = (self.metrics.get(name) for name in _FATIGUE)
+        if factor is None or factor.value is None or factor.value >= 1 or life is None:
+            return None
+        asked = any(row.metric in _FATIGUE for row in self.requirements)
+        checked = {check.metric: check.status for check in self.checks}
+        missed = checked.get("cycle_life") != "met"
+        stated = checked.get("duty_fatigue", "not_checked") != "not_checked"
+        return None if asked or missed or stated else life.value
 
     @property
     def reserve_sentences(self) -> tuple[str, ...]:

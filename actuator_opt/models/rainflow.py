@@ -11,12 +11,13 @@ Fatigue life and damage of the cycles are in `endurance`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ..base.numeric import Array, histories, real
+from ..base.symbolic import program as programs
 
 
 class Cycles(NamedTuple):
@@ -68,26 +69,39 @@ def repeating_cycles(*, history: Array | Sequence[Array]) -> Cycles:
     """
     (values,) = histories(history)
     numbers = np.asarray(real(values))
-    columns = numbers.reshape(len(numbers), -1)
-    lost = np.flatnonzero(np.isnan(columns).any(axis=0))
-    if not len(lost):
-        pairs = _pairs(columns)
-    else:
-        first = np.argmax(np.isnan(columns[:, lost]), axis=0)
-        known = np.where(np.isnan(columns).any(axis=0), 0.0, columns)  # constant: without cycles
-        pairs = np.concatenate([_pairs(known), np.stack([first, first, lost])], axis=1)
-    pairs = pairs[:, np.argsort(pairs[2], kind="stable")]
-    counts = np.bincount(pairs[2], minlength=columns.shape[1])
-    row = np.arange(pairs.shape[1]) - np.repeat(np.cumsum(counts) - counts, counts)
-    index = np.zeros((2, int(counts.max(initial=0)), len(counts)), dtype=np.intp)
-    index[:, row, pairs[2]] = pairs[:2]
-    count = (np.arange(index.shape[1])[:, None] < counts).astype(float)
-    shape = (index.shape[1], *numbers.shape[1:])
-    return Cycles(index[0].reshape(shape), index[1].reshape(shape), count.reshape(shape))
+    columns = numbers.reshape(len(numbers), -1).T
+    lost = np.flatnonzero(np.isnan(columns.sum(axis=1)))
+    first = np.argmax(np.isnan(columns[lost]), axis=1)
+    if len(lost):
+        columns = columns.copy()
+        columns[lost] = 0.0  # constant: without cycles
+    pairs, counts = _compiled(columns) if programs.AVAILABLE else _pairs(columns.T)
+    pairs[lost, 0], counts[lost] = first[:, None], 1
+    most = int(counts.max(initial=0))
+    used = np.arange(most)[:, None] < counts
+    index = np.where(used, pairs[:, :most].transpose(2, 1, 0), 0)
+    shape = (most, *numbers.shape[1:])
+    largest, smallest, count = (x.reshape(shape) for x in (*index, used.astype(float)))
+    return Cycles(largest, smallest, count)
 
 
-def _pairs(columns: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
-    """Samples of the largest and the smallest value of every cycle, and its column (3, cycles).
+class _Pairs(NamedTuple):
+    """Samples of the cycles of every history (histories, cycles, 2), and their number."""
+
+    samples: npt.NDArray[np.integer[Any]]
+    count: npt.NDArray[np.integer[Any]]
+
+
+def _compiled(histories: npt.NDArray[np.float64]) -> _Pairs:
+    """Samples of the cycles of histories (histories, samples), as `_pairs` counts them."""
+    pairs = np.empty((*histories.shape, 2), dtype=np.int32)
+    counts = np.empty(len(histories), dtype=np.int32)
+    programs.COMPILED.cycles(np.ascontiguousarray(histories), pairs, counts)
+    return _Pairs(pairs, counts)
+
+
+def _pairs(columns: npt.NDArray[np.float64]) -> _Pairs:
+    """Samples of the cycles of histories (samples, histories), without the compiled machine.
 
     All histories are in one row, each from its largest value to its largest value. Of four
     successive reversals the inner two are a cycle if their range is not above either of its
@@ -130,4 +144,10 @@ def _pairs(columns: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
     low = np.flatnonzero(~largest[row])
     ends = np.concatenate([*found, np.stack([row[low - 1], row[low]])], axis=1)
     ends = np.where(values[ends[0]] > values[ends[1]], ends, ends[::-1])
-    return np.concatenate([sample[ends], column[ends[:1]]])
+    order = np.argsort(column[ends[0]], kind="stable")
+    owner, found_pairs = column[ends[0]][order], sample[ends[:, order]].T
+    counts = np.bincount(owner, minlength=count)
+    row = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
+    pairs = np.zeros((count, max(int(counts.max(initial=0)), 1), 2), dtype=np.intp)
+    pairs[owner, row] = found_pairs
+    return _Pairs(pairs, counts)

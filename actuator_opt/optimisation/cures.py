@@ -99,9 +99,9 @@ class Cure:
 class Cures:
     """Single changes that each make the design feasible, and the PATHs that were not tried.
 
-    `together` has dimensions that make the design feasible only if all of them change. `failed` has
-    the changes that were tried but are not enough alone: PATHs of dimensions, and choices with
-    their word.
+    `together` has dimensions, and bounds of variables, that make the design feasible only if all of
+    them change. `failed` has the changes that were tried but are not enough alone: PATHs of
+    dimensions, and choices with their word.
     """
 
     dimensions: tuple[Cure, ...] = ()
@@ -260,11 +260,11 @@ def least_changes(
             value = min(max(value, lower[place]), upper[place])
             result.append(Cure(paths[place], old, value))
         lower[place] = upper[place] = value
-    best = _best_near(replace(problem, lower=lower, upper=upper), start)
+    best = best_near(replace(problem, lower=lower, upper=upper), start)
     return [] if best is None else [replace(cure, objective=best) for cure in result]
 
 
-def _best_near(problem: BoxProblem, x: Vector) -> float | None:
+def best_near(problem: BoxProblem, x: Vector) -> float | None:
     """The objective at the optimum near a point; None if no feasible point is near."""
     feasible = repairs.near(problem, x)
     if feasible is None:
@@ -389,7 +389,7 @@ def _sufficient(
             "infeasible: searching for a choice whose change makes the design feasible",
             number / len(offered),
         )
-        best = _best_near(problem, _point(problem, values))
+        best = best_near(problem, _point(problem, values))
         if best is None:
             failed.append(cure)
         else:

@@ -26,6 +26,7 @@ from . import kkt, repairs
 from .actuator import ActuatorProblem
 from .cures import DIGITS, Cure, Cures, cures, is_property, outward
 from .evaluator import Evaluator, Point
+from .joint_cures import joint_cures
 from .problem import BoxProblem, Vector
 from .repairs import NOTHING, WIDEST, Conflict, Opening, RelaxedConstraint
 from .result import Infeasibility
@@ -215,7 +216,16 @@ def explained(
     conflict = explain(actuator.problem, points)
     objective = float(np.ravel(actuator.evaluate(conflict.x[:, None]).objective)[0])
     closest = replace(solution, x=conflict.x, objective=objective, kkt=None)
-    return _card(actuator, conflict, cures(actuator, conflict), solution), closest
+    return _card(actuator, conflict, _remedies(actuator, conflict), solution), closest
+
+
+def _remedies(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
+    """Single changes; if none keeps every requirement, bounds and dimensions together."""
+    found = cures(actuator, conflict)
+    kept = found.dimensions or found.together or found.choices
+    if kept or not conflict.joint or any(bound.needed is not None for bound in conflict.bounds):
+        return found
+    return replace(found, together=joint_cures(actuator, conflict.x))
 
 
 def _card(
@@ -448,5 +458,6 @@ def _evidence(explanation: Conflict, solution: Solution) -> str:
         f"{statement}: this is evidence, not proof. A feasible design confirms each change "
         "listed as enough. The search found no feasible design with smaller changes, nor "
         "with single changes that are not listed. Bounds and fixed dimensions were varied "
-        f"up to {WIDEST:g} times or down to 1/{WIDEST:g} of their value"
+        f"up to {WIDEST:g} times or down to 1/{WIDEST:g} of their value, one at a time; if no such "
+        "change was enough, together"
     )

@@ -5,8 +5,8 @@ A row is a `Sensitivity`. The best changes by 10 % of each kind of parameter are
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, field
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, field, replace
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -16,9 +16,11 @@ from ..base.numeric import STEP
 from ..base.quantities import Quantity, short
 from ..base.units import unit
 from ..evaluation.influences import NO_PERCENT, input_quantity
-from .actuator import ActuatorProblem
+from ..evaluation.kernel import FEW_SAMPLES, with_few_samples
+from .actuator import ActuatorProblem, build
 from .prices import finite, prices
-from .solution import Solution
+from .solution import Outcome, Solution
+from .solver import solve
 
 CHANGE = 0.1
 """Relative change of a parameter for which the price's prediction is checked by re-solving."""
@@ -215,7 +217,14 @@ FREE = 1e-9
 
 
 def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensitivity, ...]:
-    """Prices of the limits, and of the parameters with the largest effect on the objective."""
+    """Prices of the limits, and of the parameters with the largest effect on the objective.
+
+    With long duty cycles, they are those of the optimum with few of their samples; predicted and
+    re-optimised objectives are changes from there.
+    """
+    objective = solution.objective
+    actuator, solution = _with_few_samples(actuator, solution)
+    added = objective - solution.objective
     active = _active_limits(actuator, solution)
     limits = dict.fromkeys(
         row.limit_of.path
@@ -228,6 +237,10 @@ def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensit
     paths = tuple(path for path in paths if path in numbers and (numbers[path] or path in active))
     parameter_prices = prices(actuator.parametric(paths), solution, change=CHANGE, bounds=False)
     shown = actuator.goal.shown
+
+    def moved(value: float | None) -> float | None:
+        return None if value is None else shown(value + added)
+
     rows = []
     for price in parameter_prices:
         if price.value == 0 and abs(price.price) <= FREE * abs(solution.objective):
@@ -242,10 +255,10 @@ def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensit
                 limit=price.value,
                 price=shown(price.price),
                 percent_per_percent=price.percent_per_percent,
-                predicted_10=_shown(shown, price.predicted_up),
-                resolved_10=_shown(shown, price.resolved_up),
-                predicted_minus10=_shown(shown, price.predicted_down),
-                resolved_minus10=_shown(shown, price.resolved_down),
+                predicted_10=moved(price.predicted_up),
+                resolved_10=moved(price.resolved_up),
+                predicted_minus10=moved(price.predicted_down),
+                resolved_minus10=moved(price.resolved_down),
                 holds_until=price.holds_until,
                 next_active=price.change,
                 active=price.parameter in active,
@@ -254,11 +267,26 @@ def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensit
                 movement=dict(zip(actuator.paths, price.movement.tolist(), strict=True)),
             )
         )
-    return ranked(rows, shown(solution.objective))
+    return ranked(rows, shown(objective))
 
 
-def _shown(display: Callable[[float], float], value: float | None) -> float | None:
-    return None if value is None else display(value)
+def _with_few_samples(
+    actuator: ActuatorProblem, solution: Solution
+) -> tuple[ActuatorProblem, Solution]:
+    """The problem with few samples of its duty cycles, and its optimum, if the cycles are long."""
+    subject = with_few_samples(actuator.subject)
+    if subject is actuator.subject:
+        return actuator, solution
+    few = build(subject)
+    near = solve(replace(few.problem, start=solution.x), starts=1, samples=0)
+    return (few, near) if near.outcome is Outcome.OPTIMUM else (actuator, solution)
+
+
+def few_samples_note(actuator: ActuatorProblem) -> tuple[str, ...]:
+    """A sentence if the prices count few samples of the duty cycles."""
+    if with_few_samples(actuator.subject) is actuator.subject:
+        return ()
+    return (f"prices count {FEW_SAMPLES} samples of each duty cycle; all other results count all",)
 
 
 def _active_limits(actuator: ActuatorProblem, solution: Solution) -> set[str]:

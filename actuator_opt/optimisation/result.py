@@ -81,11 +81,12 @@ class Infeasibility:
     An entry of `cures` is a single change that is enough, the most advisable first. It contains
     kind (dimension, choice, bound, number, requirement, safety factor), parameter (PATH), now and
     needed (SI, or a word), change, texts, and advised (False for safety factors). A cure of kind
-    "dimension" is an input that is not a variable of the design. `together` lists dimensions that
-    are enough only if they change together. If the change is a choice, `beside` lists, by PATH, the
-    other inputs that must change at the same time. Each cure was confirmed by a feasible design;
-    `objective` is the best objective found with it (SI), or None if it was not optimised.
-    `untried` lists candidates that were not tried, `failed` changes that are not enough alone.
+    "dimension" is an input that is not a variable of the design. `together` lists dimensions, and
+    bounds of variables, that are enough only if all of them change. If the change is a choice,
+    `beside` lists, by PATH, the other inputs that must change at the same time. Each cure was
+    confirmed by a feasible design; `objective` is the best objective found with it (SI), or None if
+    it was not optimised. `untried` lists candidates that were not tried, `failed` changes that are
+    not enough alone.
 
     `laws` lists geometrical conditions that conflict. `total` is the sum of the relaxations in
     `joint`. `sentence` is the advice in one line, and `evidence` states what is proven.

@@ -24,7 +24,7 @@ from .choices import (
     search_choices,
 )
 from .infeasibility import explained
-from .price_table import Sensitivity, sensitivities
+from .price_table import Sensitivity, few_samples_note, sensitivities
 from .result import Certificate, Choices, Infeasibility, Kkt, Optimisation, Rounding, VariableResult
 from .rounding import Wanted, design_at, rounded, sizes_of
 from .solution import Outcome, Solution
@@ -339,6 +339,7 @@ def _result(
             *(f"variable without effect: {name}" for name in solution.without_effect),
             *_idle(actuator),
             *actuator.refusals.warnings(),
+            *(few_samples_note(actuator) if follow_up.rows else ()),
         ),
         seed=seed,
         seconds=time.perf_counter() - began,

@@ -288,8 +288,8 @@ def _limit_table(
         shown = text.metric(name).text(limit)
         blocks.append(
             _line(
-                f'advice does not bind: requirements.{name}.{sense}="{shown}" binds it, '
-                f"waivers.{name} with a reason accepts it"
+                f'advice is not a limit; to enforce it: requirements.{name}.{sense}="{shown}"; '
+                f"to accept the miss: waivers.{name} with a reason"
             )
         )
     hidden = rows[most:]
@@ -707,6 +707,8 @@ def _doubts(subject: Evaluation | Optimisation) -> Iterator[Block]:
         parts.append(count_words(len(tight)))
     for name, value in evaluation.below_one.items():
         parts.append(f"{term_of(name)} factor {text.number(value, 3)} without a limit")
+    if life := report.limited_life(evaluation):
+        parts.append(life)
     if results := counts["extrapolated"] + counts["extrapolated_models"]:
         parts.append(f"{_count(results, 'result')} extrapolated (!)")
     skipped = sum(check.status == "not_checked" for check in evaluation.checks)

@@ -92,25 +92,27 @@ def sensitivities(optimisation: Optimisation) -> Table:
                 text.number(row.percent_per_percent, 3, signed=True),
                 *(solved or [""] * 4),
                 Reach(_reach(row), met=row.straight(optimisation.objective_value)),
-                _reach_words(optimisation, row),
+                text.with_unit(text.trimmed(display_of(row, row.holds_until)), unit),
+                _next_active(row),
             ]
         )
     unit = text.unit_text(objective.unit) or objective.name
     low, high = f"{text.MINUS}{PER_CENT} %", f"+{PER_CENT} %"
     columns = [
-        Column("requirement or parameter", "left", 1.0, breaks=22, mono=True, least=34),
+        Column("requirement or parameter", "left", 1.0, breaks=22, mono=True, least=30),
         Column("limit", "right"),
-        Column("value", "right", drop=4, style="dim"),
-        Column("margin", "right", drop=3, style="dim"),
+        Column("value", "right", drop=5, style="dim"),
+        Column("margin", "right", drop=4, style="dim"),
         Column("act.", "center", style="yellow"),
         Column(f"{unit}/unit", "right"),
         Column("%/%", "right"),
-        Column(f"at\n{high}", "right", drop=1, style="dim"),
+        Column(f"at\n{high}", "right", drop=3, style="dim"),
         Column("+\nsolved", "right", strong=True),
-        Column(f"at\n{low}", "right", drop=1, style="dim"),
+        Column(f"at\n{low}", "right", drop=3, style="dim"),
         Column(f"{text.MINUS}\nsolved", "right", strong=True),
         Column(f"holds until\n(ticks: ±{PER_CENT} %)", "left", "24mm", on="paper"),
-        Column("holds until, then active", "left", 1.0, drop=2, style="dim", on="terminal"),
+        Column("holds\nuntil", "right", drop=1, on="terminal"),
+        Column("then", "left", 1.0, drop=2, style="dim", on="terminal"),
     ]
     title = f"What each requirement costs ({objective.label}, {unit})"
     return Table(title, columns, rows, note=quality(optimisation))
@@ -147,15 +149,13 @@ def _reach(row: Sensitivity) -> float | None:
     return row.holds_until / row.limit - 1
 
 
-def _reach_words(optimisation: Optimisation, row: Sensitivity) -> str:
-    unit = text.unit_text(row.unit)
-    until = text.with_unit(text.trimmed(display_of(row, row.holds_until)), unit)
+def _next_active(row: Sensitivity) -> str:
+    """The limit with which a price changes at the end of its range, or without which."""
     if row.next_active is None:
-        return until
-    only = "" if row.straight(optimisation.objective_value) else "only to "
+        return ""
     gone = row.next_active.removesuffix(" stops being active")
-    words = f"without {gone}" if gone != row.next_active else gone.removesuffix(" becomes active")
-    return f"{only}{until}, then {words}"
+    words = "with" if gone == row.next_active else "without"
+    return f"{words} {gone.removesuffix(' becomes active')}"
 
 
 def quality(optimisation: Optimisation) -> str:
@@ -182,7 +182,8 @@ def quality(optimisation: Optimisation) -> str:
         'Price: change of the objective per unit of the value under "limit". '
         f"At ±{PER_CENT} %: the objective that the price predicts, then the objective of the new "
         "optimum (solved), by which the rows are ranked. "
-        f"{DASH}: no design found. Holds until: value up to which the same limits stay active."
+        f"{DASH}: no design found. Holds until: the nearest value, higher or lower, "
+        "at which the active limits change."
     )
     if not all(row.straight(optimisation.objective_value) for row in optimisation.sensitivities):
         parts.append(

@@ -15,7 +15,7 @@ model or number, and names to look up next."""
 
 LINE = 62
 """Characters that surely fit into a line of 80 columns beside the names of the parts."""
-_LINES: Mapping[Part, int] = {"what": 4, "now": 2, "model": 2, "valid": 2, "source": 3, "see": 2}
+_LINES: Mapping[Part, int] = {"what": 4, "now": 2, "model": 3, "valid": 2, "source": 3, "see": 2}
 """Largest number of lines of each part; lines to copy are never cut."""
 
 

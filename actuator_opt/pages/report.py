@@ -304,7 +304,17 @@ def doubts(evaluation: Evaluation) -> tuple[list[str], list[str]]:
         (counts["unverified"], f"values not verified: {counts['unverified']}"),
         (results + models, f"EXTRAPOLATED: {words}"),
     )
-    return [line for count, line in known if not count], [line for count, line in known if count]
+    life = limited_life(evaluation)
+    return [line for count, line in known if not count], [
+        *([life] if life else []),
+        *(line for count, line in known if count),
+    ]
+
+
+def limited_life(evaluation: Evaluation) -> str:
+    """Words on a life that no requirement checks; empty if it is endless or checked."""
+    life = evaluation.limited_life
+    return "" if life is None else f"limited life: {text.number(life, 3)} pressure cycles"
 
 
 def _misfit(optimisation: Optimisation | None) -> str:

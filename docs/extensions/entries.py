@@ -12,7 +12,6 @@ from actuator_opt.design.build import TABLE_KEYS
 from actuator_opt.design.materials import load_library
 from actuator_opt.design.scenario.model import Scenario
 from actuator_opt.design.structure import KeyEntry, entries as keys_of, templates
-from actuator_opt.metrics.table import ROWS
 
 from .book import Book
 from .markdown import escaped, fence, page, phrase, table
@@ -127,17 +126,17 @@ def _facts(explanation: Explanation, book: Book) -> list[tuple[str, str]]:
             facts.append(("symbol", escaped(quantity.symbol)))
         if quantity.worst:
             facts.append(("worst value", "smallest" if quantity.worst == "min" else "largest"))
-    names = explanation.model.split(", ") if explanation.model else []
-    row = ROWS.get(explanation.entry.name) if explanation.entry.kind == "metric" else None
-    walls = {model: wall for wall, model in row.by_wall.items()} if row else {}
-    models = [
-        (f"{{model}}`{n}`" if n in book.labels.get("model", {}) else phrase(n))
-        + (f" (where `barrel.model` is `{walls[n]}`)" if n in walls else "")
-        for n in names
+    models = [name.partition(" (") for name in explanation.model.split(", ") if name]
+    names = [name for name, _, _ in models]
+    known = book.labels.get("model", {})
+    links = [
+        (f"{{model}}`{name}`" if name in known else phrase(name))
+        + (f" {phrase(brace + where)}" if where else "")
+        for name, brace, where in models
     ]
     more = {
         "valid": phrase(explanation.validity),
-        "model": ", ".join(models),
+        "model": ", ".join(links),
         "source": phrase(explanation.source, book.labels.get("source", ())),
         "theory": theory_of(names),
         "see also": ", ".join(linked(name, book) for name in explanation.related),

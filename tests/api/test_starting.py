@@ -136,7 +136,8 @@ def test_a_double_rod_start_pushes_as_it_pulls(wall):
         ({"type": "plunger"}, "use one of differential, double_rod"),
         ({"goal": "mas"}, 'did you mean "mass"?'),
         ({"push": 0.0, "pull": 0.0}, "state a force"),
-        ({"push": "900 kN", "pressure": "10 bar"}, "raise the pressure"),
+        ({"push": "900 kN", "pressure": "10 bar"}, "for pressure"),
+        ({"push": "20 MN", "pull": "20 MN"}, "push, pull: no start design"),
         ({"name": "two\nlines"}, "unprintable"),
     ],
 )
@@ -145,3 +146,33 @@ def test_unsuitable_answers(changes, words):
     with pytest.raises(ao.ActuatorError, match=r"^[^\n]*$") as error:
         ao.start(**changes)
     assert words in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"push": 2e7, "pressure": 1.5e8},
+        {"stroke": 10.0, "push": 1e3, "pressure": 1.5e8},
+        {"pull": 1e5, "pressure": 1e6, "stroke": 0.01},
+        {"stiffness": 1e15},
+        {"speed": 20.0},
+        {"stroke": 10.0, "pull": 1e5, "pressure": 1.5e8, "type": "double_rod"},
+    ],
+)
+def test_absurd_answers_name_what_was_typed_and_its_limit(changes):
+    """The line names options, not the template; each limit gives a start, and none lies beyond."""
+    usual = {"push": 5e3, "pull": 3e3, "stroke": 0.1, "pressure": 160e5}
+    answers = StartAnswers(**usual | changes)
+    with pytest.raises(ao.ActuatorError, match=r"^--(?!.*<text>)[^\n]*$") as error:
+        starting.solved_start(answers, prefix="--")
+    line = str(error.value)
+    key = re.match(r"--(\w+): ", line)[1]
+    assert key in changes
+    limits = re.findall(r"at (most|least) ([\d.e+]+ [\w/]+)(?: for --(\w+))?", line)
+    assert limits
+    for sense, text, other in limits:
+        name = other or key
+        number = starting.start_answers({name: text})[name]
+        assert not starting._fault(answers, {name: number})
+        beyond = number * (1.1 if sense == "most" else 0.9)
+        assert starting._fault(answers, {name: beyond})

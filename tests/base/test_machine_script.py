@@ -62,9 +62,9 @@ def compared(jobs, folder, visit=None):
             yield found, made.values(points)
             continue
         repeated = np.broadcast_to(seeds, (len(points), *seeds.shape)).copy()
-        values, slopes = made.slopes(points, repeated)
-        yield found[:, :count], values
-        yield found[:, count:].reshape(slopes.shape), slopes
+        duals = made.duals(programs.NOTHING, points, repeated)
+        yield found[:, :count], duals[:, :, 0]
+        yield found[:, count:].reshape(len(points), count, -1), duals[:, :, 1:]
 
 
 def noded(code, folder):

@@ -112,7 +112,8 @@ def test_random_programs_agree_with_numpy_and_the_complex_step(steps, values):
         moved = [np.array([v + (1j * STEP if k == d else 0) for d in range(3)])
                  for k, v in enumerate(point)]  # fmt: skip
         stepped = np.array([np.broadcast_to(v, (3,)) for v in grown(steps, moved)]).imag / STEP
-    got, slopes = made.slopes(point[None], np.eye(3)[None])
+    duals = made.duals(programs.NOTHING, point[None], np.eye(3)[None])
+    got, slopes = duals[:, :, 0], duals[:, :, 1:]
     np.testing.assert_array_equal(made.values(point[None])[0], plain)
     np.testing.assert_array_equal(got[0], plain)
     # Where a root or a quotient is singular, and at 0, where its square is negative, the complex
@@ -131,7 +132,7 @@ def test_many_points_equal_each_point():
     one_by_one = np.concatenate([made.values(point[None]) for point in points])
     seeds = np.broadcast_to(np.eye(4), (101, 4, 4)).copy()
     assert np.array_equal(together, one_by_one)
-    assert np.array_equal(together, made.slopes(points, seeds)[0])
+    assert np.array_equal(together, made.duals(programs.NOTHING, points, seeds)[:, :, 0])
 
 
 @pytest.mark.parametrize("groups", [1, 2, 7, 14, 42])
@@ -147,8 +148,8 @@ def test_shared_inputs_and_sums_equal_each_point(groups, directions):
     seeds = rng.normal(size=(groups, 4, directions))
     each = np.arange(42) * groups // 42
     points = np.concatenate([shared[each], own], axis=1)
-    found = [made.slopes(x[None], s[None]) for x, s in zip(points, seeds[each], strict=True)]
-    single = np.concatenate([np.concatenate([v[:, :, None], d], axis=2) for v, d in found])
+    pairs = zip(points, seeds[each], strict=True)
+    single = np.concatenate([made.duals(programs.NOTHING, x[None], s[None]) for x, s in pairs])
     assert np.array_equal(made.duals(shared, own, seeds), single)
     summed = made.duals(shared, own, seeds, 6)
     np.testing.assert_allclose(summed, single.reshape(6, 7, 3, -1).sum(axis=1), rtol=1e-12)
@@ -156,13 +157,30 @@ def test_shared_inputs_and_sums_equal_each_point(groups, directions):
         made.duals(shared, own, seeds, 5)
 
 
+@pytest.mark.parametrize("count", [2, 9])
 @pytest.mark.parametrize("directions", [1, 4, 5, 16, 17, 40])
-def test_any_number_of_directions(directions):
-    """Directions are computed in groups of the machine's widths."""
+def test_any_number_of_directions(directions, count):
+    """One point at a time, and several side by side; more directions than fit in one run."""
     _, made = recorded(lambda x: x * x, np.ones(3))
     rng = np.random.default_rng(directions)
-    seeds, point = rng.normal(size=(2, 3, directions)), rng.normal(size=(2, 3))
-    assert np.allclose(made.slopes(point, seeds)[1], 2 * point[:, :, None] * seeds, rtol=1e-15)
+    seeds, point = rng.normal(size=(count, 3, directions)), rng.normal(size=(count, 3))
+    slopes = made.duals(programs.NOTHING, point, seeds)[:, :, 1:]
+    assert np.allclose(slopes, 2 * point[:, :, None] * seeds, rtol=1e-15)
+
+
+@pytest.mark.parametrize("count", [1, 9])
+def test_operands_without_slopes(count):
+    """The sign of a number, and a condition, give no slope to a constant that they choose."""
+
+    def function(x):
+        return np.stack(
+            [np.copysign(2.0, x[0]), np.where(x[0], 1.0, 3.0), np.where(x[0], x[1], 3.0)]
+        )
+
+    _, made = recorded(function, np.ones(2))
+    point, seeds = np.full((count, 2), -3.0), np.tile(np.eye(2), (count, 1, 1))
+    duals = made.duals(programs.NOTHING, point, seeds)
+    assert duals.tolist() == [[[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0], [-3.0, 0.0, 1.0]]] * count
 
 
 @given(st.lists(SIZED, min_size=1, max_size=9))
@@ -196,7 +214,8 @@ def test_roots_move_with_their_coefficients():
             return np.concatenate([root.real.ravel(), root.imaginary.ravel()])
 
         _, made = recorded(moved, coefficients)
-        values, slopes = made.slopes(coefficients[None], np.eye(degree + 1)[None])
+        duals = made.duals(programs.NOTHING, coefficients[None], np.eye(degree + 1)[None])
+        values, slopes = duals[:, :, 0], duals[:, :, 1:]
         at = values[0, :degree] + 1j * values[0, degree:]
         powers = np.arange(degree + 1)
         rise = (powers[1:] * coefficients[1:]) @ at ** powers[:-1, None]
@@ -355,7 +374,7 @@ def test_a_damaged_program_is_refused_or_harmless(data):
     broken = Program(code, extra, outputs, made.frozen, made.constants, made.slots, made.inputs)
     for attempt in (
         lambda: broken.values(np.ones((40, 4))),
-        lambda: broken.slopes(np.ones((2, 4)), np.ones((2, 4, 3))),
+        lambda: broken.duals(programs.NOTHING, np.ones((2, 4)), np.ones((2, 4, 3))),
         lambda: broken.repeated(np.ones(4), 3)(1.0, np.ones(3)),
         lambda: broken.repeated(np.ones(4), 3, [1, 3])(1.0, np.ones(3)),
     ):

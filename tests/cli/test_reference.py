@@ -37,6 +37,23 @@ def evaluation():
     return ao.evaluate(f"{BENCH}\n")
 
 
+def test_each_of_several_models_says_for_which_wall_it_applies():
+    """Burst: a metal tube, an exact layered tube or a thin laminate, by barrel.model."""
+    explanation = ao.explain("burst_factor")
+    assert explanation.model == (
+        "barrel.burst_pressure_thick (barrel.model isotropic), tube_burst.burst_of_tube (layered), "
+        "burst_ladder.burst_by_ply_discount (thin_laminate)"
+    )
+    words = " ".join(explanation.text(**PLAIN).split())
+    assert "burst_by_ply_discount (thin_laminate)" in words, "not cut off"
+    several = [row for row in ROWS.values() if row.by_wall]
+    assert len(several) > 3
+    for row in several:
+        for model in ao.explain(row.name).model.split(", "):
+            assert model.endswith(")"), (row.name, model)
+    assert "(" not in ao.explain("mass").model
+
+
 def test_every_entry_has_definition_unit_and_source():
     """Every name explains itself on one screen of 80 columns, and says where its number comes from.
 

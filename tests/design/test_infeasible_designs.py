@@ -118,6 +118,30 @@ def test_a_bore_too_small_for_the_force():
     assert least < bore["needed"] < 1.15 * least
 
 
+def test_a_bound_and_a_fixed_dimension_that_block_together():
+    """A start for 12 kN is asked for 30 kN: its thread is too small, and so is the largest bore.
+
+    By hand, the thread alone leaves the bore at p A = 24.9 kN. A solved start for 30 kN exists, so
+    that less force is not the only way out. The sizes as printed give a design.
+    """
+    start = ao.start(push="12 kN")
+    strong = start.changed({"load_cases[push].force": "30 kN"})
+    largest = start.design.variables["cylinder.bore"].upper
+    assert 160e5 * math.pi / 4 * largest**2 < 30e3
+    card = best_of(strong).infeasibility
+    assert "rod.thread.diameter" in card.failed
+    first, *others = card.cures
+    changes = {part["parameter"]: part["needed_text"] for part in first["together"]}
+    assert set(changes) == {"variables.cylinder.bore.upper", "rod.thread.diameter"}
+    assert [cure["kind"] for cure in others] == ["requirement"]
+    assert card.sentence.startswith("infeasible: it is enough to change variables.cylinder.bore")
+    assert card.sentence.endswith(" together")
+    assert best_of(strong.changed(changes)).status == "optimal"
+    one = dict([changes.popitem()])
+    for single in (changes, one):
+        assert best_of(strong.changed(single)).status == "infeasible"
+
+
 def test_limits_that_contradict_each_other_by_definition():
     """A squeeze of at least 20 % that never exceeds 18 % (tolerance and growth included).
 

@@ -210,3 +210,19 @@ def test_slopes_of_all_results_are_those_of_differences(name: str):
     differences = (above - below) / (high[row] - low[row])
     scale = np.abs(differences).max() * 1e-4 + 1e-9 * np.abs(above) / np.abs(high[row] * 1e-6)
     assert np.all(np.abs(slopes - differences) <= 1e-4 * np.abs(differences) + scale * 1e-3)
+
+
+def test_equal_designs_are_computed_once(monkeypatch):
+    """Studies that change other numbers ask for the same cycle again and again."""
+    plan = SamplePlan(frozenset(), True, (), (), (), {})
+    one, other = numbers(), numbers(supply=180 * BAR)
+    models = CycleModels(plan, {"walk": read_cycle(STEPS)}, tuple(one))
+    points = np.array([[*x.values()] for x in (one, other, one, one)]).T
+    each = np.concatenate([models(points[:, k : k + 1]) for k in range(4)], axis=1)
+    computed = []
+    some = CycleModels._results
+    monkeypatch.setattr(
+        CycleModels, "_results", lambda self, x, y: computed.append(x.shape[1]) or some(self, x, y)
+    )
+    assert np.array_equal(models(points), each)
+    assert computed == [2]

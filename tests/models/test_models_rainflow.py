@@ -9,6 +9,7 @@ import pytest
 from counted_cycles import cycle_stress
 from hypothesis import given, strategies as st
 
+from actuator_opt.base.symbolic import program as programs
 from actuator_opt.models import rainflow
 
 EXAMPLE = [0.0, 210.0, 80.0, 150.0, 20.0, 120.0, 0.0]
@@ -21,6 +22,16 @@ histories = st.one_of(
     st.lists(whole.map(float), min_size=1, max_size=40),
     st.lists(st.floats(-1e9, 1e9), min_size=1, max_size=40),
 )
+
+
+@pytest.fixture(params=[True, False], ids=["compiled", "numpy"], autouse=True, scope="module")
+def counted_by(request):
+    """Every claim holds with the compiled machine and without it."""
+    if request.param and not programs.AVAILABLE:
+        pytest.skip("the machine was not built")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(programs, "AVAILABLE", request.param)
+        yield
 
 
 def values_of(history):
@@ -144,3 +155,18 @@ def test_slopes_are_those_of_the_paired_samples():
     slopes = np.imag(stress.amplitude) / 1e-30, np.imag(stress.mean) / 1e-30
     assert np.flatnonzero(slopes[0]).tolist() == np.flatnonzero(slopes[1]).tolist() == [at]
     assert (slopes[0][at], slopes[1][at]) == pytest.approx((-0.5, 0.5))
+
+
+@pytest.mark.skipif(not programs.AVAILABLE, reason="the machine was not built")
+def test_wrong_memory_is_refused():
+    """The compiled machine writes only to arrays of the right size."""
+    values, pairs, counts = np.zeros((2, 5)), np.zeros((2, 5, 2), np.int32), np.zeros(2, np.int32)
+    for bad in (
+        (values[:, :4].copy(), pairs, counts),
+        (values, pairs, np.zeros(3, np.int32)),
+        (values, pairs[:1], counts),
+    ):
+        with pytest.raises(ValueError, match="histories"):
+            programs.COMPILED.cycles(*bad)
+    programs.COMPILED.cycles(np.zeros((2, 0)), pairs[:, :0].copy(), counts)
+    assert counts.tolist() == [0, 0]

@@ -135,6 +135,53 @@ def test_a_good_verdict_states_every_doubt():
     assert (f"{tight} limit" in said) == bool(tight)
 
 
+def test_advice_says_how_to_enforce_it_and_how_to_accept_the_miss():
+    """Both ways as printed: the requirement is then missed, and the waiver leaves no advice."""
+    start = ao.start()
+    shown = text(ao.evaluate(start), width=200)
+    path, limit, waiver = re.search(
+        r'to enforce it: (\S+)="(.*)"; to accept the miss: (\S+) with a reason', shown
+    ).groups()
+    enforced = ao.evaluate(start.changed({path: limit}))
+    assert not enforced.met
+    assert [row.path for row in enforced.requirements if not row.met] == [path]
+    accepted = ao.evaluate(start.changed({waiver: "a thin ring suffices"}))
+    assert accepted.met
+    assert "advice" not in text(accepted, width=200)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "cycles"),
+    [
+        ("knee", {}, 104_170),
+        ("knee", {"requirements.fatigue_factor.min": 0.2}, None),
+        ("knee", {"requirements.cycle_life.min": 1e5}, None),
+        ("knee", {"supply.pressure": "60 bar"}, None),
+        ("knee_walking", {}, None),
+    ],
+    ids=["knee", "factor asked for", "life asked for", "low pressure", "duty cycles"],
+)
+def test_a_limited_life_stands_beside_the_verdict(name, changes, cycles):
+    """Fatigue below endless strength is told, unless file or duty cycles ask for a life.
+
+    At 60 bar the stresses are 60/210 of those for which the factor is 0.44, so it exceeds 1.
+    """
+    actuator = ao.read(DESIGNS / f"{name}.yaml").changed(changes)
+    evaluation = ao.evaluate(actuator)
+    factor = evaluation.metrics["fatigue_factor"].value
+    told = "limited life: "
+    if cycles is None:
+        assert "60 bar" not in changes.values() or factor > 1
+        assert evaluation.limited_life is None
+        assert told not in text(evaluation)
+        return
+    assert factor < 1
+    assert evaluation.limited_life == evaluation.metrics["cycle_life"].value
+    words = f"{told}{cycles:,} pressure cycles".replace(",", "\N{NARROW NO-BREAK SPACE}")
+    assert words in text(evaluation, width=200)
+    assert report.verdict(evaluation).cautions[0] == words
+
+
 def test_prices_are_changes_of_the_objective():
     """10 % looser and tighter of each active requirement, from re-solved optima; or none found."""
     optimisation = fixture.build_optimisation()

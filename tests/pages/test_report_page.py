@@ -51,9 +51,21 @@ def test_price_is_per_display_unit():
     row = rows_of(fixture.page_data(fixture.build_optimisation(), **SOURCE), "What each")[0]
     assert row[:7] == ["stiffness_min.min", "10 kN/mm", "10.00", "0.0 %", "●", "+15.8", "+0.770"]
     assert row[7:11] == ["221.0", "221.7", "189.4", "190.4"]
-    assert "12.1 kN/mm, then rod.outer_diameter upper bound" in fixture.shown(
-        fixture.build_optimisation(), width=200
-    )
+
+
+@pytest.mark.parametrize(
+    ("width", "end"),
+    [
+        (80, "190.4"),
+        (100, "190.4 12.1 kN/mm"),
+        (200, "190.4 12.1 kN/mm with rod.outer_diameter upper bound"),
+    ],
+)
+def test_the_end_of_a_price_is_shown_from_100_columns_on(width, end):
+    """Widths of a usual terminal: 80 columns are full without it, 100 have room for the value."""
+    shown = fixture.shown(fixture.build_optimisation(), width=width)
+    line = next(x for x in shown.splitlines() if x.startswith("stiffness_min.min"))
+    assert " ".join(line.split()).endswith(end)
 
 
 def test_infeasible_resolve_shows_a_dash():

@@ -14,7 +14,7 @@
 #define TEXT(name, result) #name,
 static const char *const NAMES[] = {OPERATIONS(TEXT) "roots"};
 
-enum { LANES = 32, MOST_SLOPES = 8192 };
+enum { LANES = 32, MOST_SLOPES = 8192, MOST_TOGETHER = 32, MOST_IN_LANES = 16 };
 
 #if defined(__GNUC__) && defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
 #define FAST __attribute__((target_clones("arch=x86-64-v3", "default")))
@@ -33,18 +33,19 @@ FAST static void run_lanes(
     for (Py_ssize_t k = 0; k < count; k++) value_of(code + WORDS * k, extra, V, LANES);
 }
 
-#define DUAL(T, L) \
-    FAST static void run_dual_##T##_##L( \
-        const uint16_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D \
-    ) { dual(code, count, extra, V, D, T, L); }
-DUAL(4, 1) DUAL(8, 1) DUAL(12, 1) DUAL(16, 1) DUAL(8, 4) DUAL(12, 4) DUAL(16, 4)
+#define DUAL(name, T, L) \
+    FAST static void name( \
+        const uint16_t *code, Py_ssize_t count, const int32_t *extra, double *V, double *D, int width \
+    ) { (void)width, dual(code, count, extra, V, D, T, L); }
+DUAL(run_dual, width, 1)
+/* with lanes, each width has a copy of its own, which is faster */
+DUAL(run_dual_4, 4, FOUR) DUAL(run_dual_8, 8, FOUR) DUAL(run_dual_12, 12, FOUR)
+DUAL(run_dual_16, 16, FOUR)
 
-typedef void (*Dual)(const uint16_t *, Py_ssize_t, const int32_t *, double *, double *);
-static Dual dual_of(int T, Py_ssize_t L) {
-    return T == 4 ? run_dual_4_1
-         : T == 8 ? L == 1 ? run_dual_8_1 : run_dual_8_4
-         : T == 12 ? L == 1 ? run_dual_12_1 : run_dual_12_4
-                   : L == 1 ? run_dual_16_1 : run_dual_16_4;
+typedef void (*Dual)(const uint16_t *, Py_ssize_t, const int32_t *, double *, double *, int);
+static Dual dual_of(Py_ssize_t T, Py_ssize_t L) {
+    return L == 1 ? run_dual : T == 4 ? run_dual_4 : T == 8 ? run_dual_8
+         : T == 12 ? run_dual_12 : run_dual_16;
 }
 
 /* ---- a program from Python ---- */
@@ -115,11 +116,14 @@ static int run_values(const Program *p, const Points *x, double *results) {
     return 0;
 }
 
-static int is_step(int operation) {
+/* Flags of the operands by which an operation has derivatives. */
+static int sloped(int operation) {
     switch (operation) {
         case OP_lt: case OP_le: case OP_eq: case OP_and: case OP_or: case OP_not: case OP_isnan:
-        case OP_sign: case OP_floor: case OP_roots: return 1;
-        default: return 0;
+        case OP_sign: case OP_floor: case OP_roots: return 0;
+        case OP_copysign: return FIRST;
+        case OP_where: return SECOND | THIRD;
+        default: return FIRST | SECOND | THIRD;
     }
 }
 
@@ -135,45 +139,62 @@ static void follow(const Program *p, uint16_t *code, uint8_t *active) {
             for (int j = 0; j < 3; j++)
                 if (at[2 + j] < p->slots && active[at[2 + j]] && !(flags & (FROZEN << j)))
                     flags |= 1 << j;
-            if ((flags & (FIRST | SECOND | THIRD)) && !is_step(OPERATION(at))) flags |= RESULT;
+            flags &= sloped(OPERATION(at)) | ~(FIRST | SECOND | THIRD);
+            if (flags & (FIRST | SECOND | THIRD)) flags |= RESULT;
             active[at[1]] = (flags & RESULT) != 0;
         }
         at[0] = (uint16_t)(OPERATION(at) | flags << 8);
     }
 }
 
-/* results: (points/summed, outputs, 1 + T) */
-static int run_slopes(
-    const Program *p, const Points *x, int T, const int32_t *varies, double *results
-) {
-    /* several lanes, if there are enough points and all slots stay in fast memory */
-    const Py_ssize_t L = x->count < 4 || T == 4 || p->slots * T > MOST_SLOPES ? 1 : FOUR;
-    double *V = calloc(L * (p->slots + p->constant_count), sizeof(double));
-    double *D = calloc(L * p->slots * T, sizeof(double));
-    const Dual computed = dual_of(T, L);
-    if (V == NULL || D == NULL) return free(V), free(D), -1;
-    constants_to(p, V, (int)L);
-    for (Py_ssize_t at = 0, wide; at < x->count; at += wide) {
+/* Derivatives along `wide` of T directions, from `first`: results are (points/summed, outputs, 1 + T).
+   Values are written with the first of them. D has room for `wide` directions in L lanes. */
+static void run_some_slopes(const Program *p, const Points *x, Py_ssize_t T, Py_ssize_t first,
+                            int wide, Py_ssize_t L, const int32_t *varies, double *V, double *D,
+                            double *results) {
+    const Dual computed = dual_of(wide, L);
+    for (Py_ssize_t at = 0, lanes; at < x->count; at += lanes) {
         const Py_ssize_t left = x->seeded - at % x->seeded; /* points with the same seeds */
-        wide = x->count - at < L ? x->count - at : L;
-        if (x->seeded > 1 && left < wide) wide = left;
-        inputs_to(p, x, at, wide, V, L);
+        lanes = x->count - at < L ? x->count - at : L;
+        if (x->seeded > 1 && left < lanes) lanes = left;
+        inputs_to(p, x, at, lanes, V, L);
         for (Py_ssize_t l = 0; l < L && at % x->seeded == 0; l++) {
-            const double *seed = x->seeds + (at + (l < wide ? l : 0)) / x->seeded * p->inputs * T;
-            for (Py_ssize_t k = 0; k < p->inputs * T; k++) D[k * L + l] = seed[k];
+            const double *seed = x->seeds + (at + (l < lanes ? l : 0)) / x->seeded * p->inputs * T;
+            for (Py_ssize_t k = 0; k < p->inputs; k++)
+                for (int t = 0; t < wide; t++)
+                    D[(k * wide + t) * L + l] = seed[k * T + first + t];
         }
-        computed(p->code, p->count, p->extra, V, D);
+        computed(p->code, p->count, p->extra, V, D, wide);
         for (Py_ssize_t k = 0; k < p->results; k++) {
             const Py_ssize_t slot = p->outputs[k];
-            for (Py_ssize_t l = 0; l < wide; l++) {
+            for (Py_ssize_t l = 0; l < lanes; l++) {
                 double *row = results + ((at + l) / x->summed * p->results + k) * (1 + T);
+                double *slopes = row + 1 + first;
                 const int begins = (at + l) % x->summed == 0;
-                row[0] = V[slot * L + l] + (begins ? -0.0 : row[0]); /* -0 adds nothing to 0 */
-                if (begins) memset(row + 1, 0, sizeof(double) * T);
+                if (first == 0) row[0] = V[slot * L + l] + (begins ? -0.0 : row[0]);
+                if (begins) memset(slopes, 0, sizeof(double) * wide);
                 if (!varies[k]) continue;
-                for (int t = 0; t < T; t++) row[1 + t] += D[(slot * T + t) * L + l];
+                for (int t = 0; t < wide; t++) slopes[t] += D[(slot * wide + t) * L + l];
             }
         }
+    }
+}
+
+static int run_slopes(const Program *p, const Points *x, Py_ssize_t T, const int32_t *varies,
+                      double *results) {
+    /* several lanes, if there are enough points and all slots stay in fast memory */
+    const Py_ssize_t most = T < MOST_IN_LANES ? T : MOST_IN_LANES;
+    const Py_ssize_t L = x->count < 4 || p->slots * most > MOST_SLOPES ? 1 : FOUR;
+    const Py_ssize_t together = L == 1 ? MOST_TOGETHER : MOST_IN_LANES;
+    const Py_ssize_t room = T < together ? T : together;
+    double *V = calloc(L * (p->slots + p->constant_count), sizeof(double));
+    double *D = calloc(L * p->slots * room, sizeof(double));
+    if (V == NULL || D == NULL) return free(V), free(D), -1;
+    constants_to(p, V, (int)L);
+    for (Py_ssize_t first = 0; first < T; first += together) {
+        const Py_ssize_t left = T - first;
+        run_some_slopes(p, x, T, first, (int)(left < together ? left : together), L, varies, V, D,
+                        results);
     }
     free(V), free(D);
     return 0;
@@ -261,7 +282,7 @@ PyDoc_STRVAR(run_doc,
     "Run a checked program for points. The first inputs (groups, first) are each shared by the same\n"
     "number of successive points; the others are (points, inputs - first). Without seeds (width 0),\n"
     "`results` is (rows, outputs). With seeds (groups, inputs, width) it is (rows, outputs,\n"
-    "1 + width); width is 4, 8, 12 or 16. Each row is the sum over the same number of successive points.");
+    "1 + width); width is a multiple of 4. Each row is the sum over the same number of successive points.");
 
 /* Number of successive points in each of the parts of a buffer; 0 if they do not fit. */
 static Py_ssize_t successive(Py_ssize_t points, Py_ssize_t size, Py_ssize_t item) {
@@ -284,7 +305,7 @@ static PyObject *run(PyObject *self, PyObject *args) {
     const Program *p = &program->p;
     for (int k = 0; k < 4; k++) valid &= sized(&view[k], 8, &size[k]);
     valid = valid && x.first >= 0 && x.first < p->inputs
-         && (width == 0 || width == 4 || width == 8 || width == 12 || width == 16);
+         && width >= 0 && width % FOUR == 0;
     if (valid) {
         const Py_ssize_t rest = p->inputs - x.first;
         x.shared = view[0].buf, x.own = view[1].buf, x.seeds = view[2].buf;
@@ -344,15 +365,16 @@ typedef struct {
     int slopes;               /* whether the results are derivatives */
 } Prepared;
 
-/* Columns of derivatives, up to 16 at a time: one direction for each input that has derivatives. */
+/* Columns of derivatives, several at a time: one direction for each input that has derivatives. */
 static void prepared_slopes(Prepared *own) {
     const Program *p = &own->program->p;
-    for (Py_ssize_t first = 0; first < own->width; first += 16) {
-        const Py_ssize_t left = own->width - first, used = left < 16 ? left : 16;
-        const int T = used <= 4 ? 4 : used <= 8 ? 8 : used <= 12 ? 12 : 16;
+    for (Py_ssize_t first = 0; first < own->width; first += MOST_TOGETHER) {
+        const Py_ssize_t left = own->width - first;
+        const Py_ssize_t used = left < MOST_TOGETHER ? left : MOST_TOGETHER;
+        const int T = (int)(used + 3) / 4 * 4;
         memset(own->D, 0, sizeof(double) * p->inputs * T);
         for (Py_ssize_t t = 0; t < used; t++) own->D[own->columns[first + t] * T + t] = 1.0;
-        dual_of(T, 1)(p->code, p->count, p->extra, own->V, own->D);
+        run_dual(p->code, p->count, p->extra, own->V, own->D, T);
         for (Py_ssize_t k = 0; k < p->results; k++) {
             if (!own->program->varies[k]) continue;
             const double *row = own->D + (size_t)p->outputs[k] * T;
@@ -444,7 +466,7 @@ static PyObject *prepare(PyObject *self, PyObject *args) {
         return PyErr_SetString(PyExc_ValueError, "not the states of the program"), NULL;
     }
     own->V = calloc(p->slots + p->constant_count, sizeof(double));
-    own->D = calloc(own->width ? p->slots * 16 : 1, sizeof(double));
+    own->D = calloc(own->width ? p->slots * MOST_TOGETHER : 1, sizeof(double));
     if (own->V == NULL || own->D == NULL) {
         Py_DECREF(own);
         return PyErr_NoMemory();
@@ -453,11 +475,67 @@ static PyObject *prepare(PyObject *self, PyObject *args) {
     return (PyObject *)own;
 }
 
+/* ---- rainflow counting ---- */
+
+/* Whether the inner two of four successive reversals are a cycle: their range is not above those of
+   their neighbours. Ranges that share a reversal compare as their other ends, without rounding. */
+static int is_cycle(const double *x, const int32_t *r) {
+    const double a = x[r[0]], b = x[r[1]], c = x[r[2]], d = x[r[3]];
+    return b > c ? a <= c && d >= b : a >= c && d <= b;
+}
+
+/* Cycles of n values that repeat, from the first largest of them: pairs (cycles, 2) of the places of
+   the larger and the smaller value. `r` has room for n + 1 places. Returns the number of cycles. */
+static Py_ssize_t cycles_of(const double *x, Py_ssize_t n, int32_t *r, int32_t *pairs) {
+    Py_ssize_t start = 0, size = 0, count = 0;
+    for (Py_ssize_t k = 1; k < n; k++) if (x[k] > x[start]) start = k;
+    for (Py_ssize_t k = 0; k <= n; k++) {
+        const int32_t at = (int32_t)((start + k) % n);
+        if (size > 0 && x[at] == x[r[size - 1]]) size--; /* of equal values, the last */
+        else if (size > 1 && (x[at] > x[r[size - 1]]) == (x[r[size - 1]] > x[r[size - 2]])) size--;
+        r[size++] = at;
+        while (size > 3 && is_cycle(x, r + size - 4)) {
+            const int32_t b = r[size - 3], c = r[size - 2];
+            pairs[2 * count] = x[b] > x[c] ? b : c, pairs[2 * count + 1] = x[b] > x[c] ? c : b;
+            count++, r[size - 3] = r[size - 1], size -= 2;
+        }
+    }
+    if (size > 2) pairs[2 * count] = r[0], pairs[2 * count + 1] = r[1], count++;
+    return count;
+}
+
+PyDoc_STRVAR(cycles_doc,
+    "cycles(values, pairs, counts)\n\n"
+    "Rainflow cycles of repeating histories, values (histories, samples): their number (histories,),\n"
+    "and samples of the largest and the smallest value of each (histories, samples, 2), int32.");
+
+static PyObject *cycles(PyObject *self, PyObject *args) {
+    static const Py_ssize_t item[3] = {8, 4, 4};
+    Py_buffer view[3];
+    Py_ssize_t size[3];
+    int valid = 1;
+    (void)self;
+    if (!PyArg_ParseTuple(args, "y*w*w*", &view[0], &view[1], &view[2])) return NULL;
+    for (int k = 0; k < 3; k++) valid &= sized(&view[k], item[k], &size[k]);
+    const Py_ssize_t n = size[2] > 0 ? size[0] / size[2] : 0;
+    valid = valid && n * size[2] == size[0] && size[1] == 2 * size[0] && n < INT32_MAX;
+    int32_t *room = valid ? malloc(sizeof(int32_t) * (n + 1)) : NULL;
+    for (Py_ssize_t k = 0; room != NULL && n > 0 && k < size[2]; k++)
+        ((int32_t *)view[2].buf)[k] = (int32_t)cycles_of(
+            (const double *)view[0].buf + k * n, n, room, (int32_t *)view[1].buf + 2 * n * k);
+    free(room);
+    for (int k = 0; k < 3; k++) PyBuffer_Release(&view[k]);
+    if (!valid) return PyErr_SetString(PyExc_ValueError, "not the values of histories"), NULL;
+    if (room == NULL) return PyErr_NoMemory();
+    Py_RETURN_NONE;
+}
+
 static PyMethodDef METHODS[] = {
     {"checked", checked, METH_VARARGS, checked_doc},
     {"run", run, METH_VARARGS, run_doc},
     {"follow", follow_slots, METH_VARARGS, follow_doc},
     {"prepare", prepare, METH_VARARGS, prepare_doc},
+    {"cycles", cycles, METH_VARARGS, cycles_doc},
     {NULL, NULL, 0, NULL},
 };
 

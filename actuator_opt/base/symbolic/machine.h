@@ -360,6 +360,6 @@ INLINE void dual(
                 continue;
         }
         if (L == 1) f = same(AT(f, 0)), g = same(AT(g, 0));
-        combined(R, A, B, f, g, operation == OP_copysign ? FIRST : flags, T, L);
+        combined(R, A, B, f, g, flags, T, L);
     }
 }

@@ -18,6 +18,12 @@ const Machine = (() => {
     .map((name) => NAMES.indexOf(name)));
   const WORDS = 5, FIRST = 1, SECOND = 2, THIRD = 4, RESULT = 8, FROZEN = 16;
 
+  /* Flags of the operands by which an operation has derivatives. */
+  function sloped(operation) {
+    if (STEPS.has(operation)) return 0;
+    return operation === COPYSIGN ? FIRST : operation === WHERE ? SECOND | THIRD : 7;
+  }
+
   function unpacked(content, Kind) {
     if (content instanceof Kind) return content;
     const bytes = Uint8Array.from(atob(content), (character) => character.charCodeAt(0));
@@ -292,7 +298,8 @@ const Machine = (() => {
       let found = 0;
       for (let j = 0; j < 3; j++)
         if (active[code[at + 2 + j]] && !(frozen & FROZEN << j)) found |= 1 << j;
-      if (found && !STEPS.has(operation)) found |= RESULT;
+      found &= sloped(operation);
+      if (found) found |= RESULT;
       flags[k] = found;
       active[code[at + 1]] = found & RESULT ? 1 : 0;
     }
@@ -318,7 +325,7 @@ const Machine = (() => {
       f = D2[0], g = D2[1];
     }
     const A = code[at + 2] * T, B = code[at + 3] * T;
-    if (!(flags & SECOND) || operation === COPYSIGN)
+    if (!(flags & SECOND))
       for (let t = 0; t < T; t++) D[R + t] = f * D[A + t];
     else if (!(flags & FIRST)) for (let t = 0; t < T; t++) D[R + t] = g * D[B + t];
     else for (let t = 0; t < T; t++) D[R + t] = f * D[A + t] + g * D[B + t];

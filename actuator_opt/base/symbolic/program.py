@@ -21,11 +21,11 @@ from .derivative import is_steep_at_zero
 from .expression import Symbol, needed
 
 try:
-    _MACHINE: Any = import_module("._machine", __package__)
+    COMPILED: Any = import_module("._machine", __package__)
 except ImportError:
-    _MACHINE = None
-OPERATIONS: Final[tuple[str, ...]] = getattr(_MACHINE, "OPERATIONS", ())
-AVAILABLE: Final = _MACHINE is not None
+    COMPILED = None
+OPERATIONS: Final[tuple[str, ...]] = getattr(COMPILED, "OPERATIONS", ())
+AVAILABLE: Final = COMPILED is not None
 """Whether the virtual machine was built at installation."""
 NOT_BUILT: Final = "the machine was not built at installation"
 """Reason why programs cannot be written or run."""
@@ -33,8 +33,8 @@ MACHINE: Final = Path(__file__).with_name("machine.h")
 """Text of the machine, without its Python module."""
 SCRIPT: Final = Path(__file__).with_name("machine.js")
 """The same machine in JavaScript, for pages; it takes `Program.for_page`."""
-WIDTHS: Final = (4, 8, 12, 16)
-"""Numbers of directions for which the virtual machine can compute derivatives in one run."""
+WIDTH: Final = 4
+"""The virtual machine computes derivatives along a multiple of this number of directions."""
 SHARED: Final = ("real", "part")
 """Operations that compute nothing new: the value of the operand without its derivatives, and one of
 the computed roots of a polynomial. Their value is in the slot of their operand."""
@@ -114,17 +114,6 @@ class Program:
             read[slots.ravel()] = True
         return read[: self.inputs]
 
-    def slopes(self, points: Array, seeds: Array) -> tuple[Array, Array]:
-        """Outputs (points, outputs) and their slopes (points, outputs, directions).
-
-        Parameters
-        ----------
-        points : inputs of every point, (points, inputs)
-        seeds : change of every input in every direction, (points, inputs, directions)
-        """
-        results = self.duals(NOTHING, points, seeds)
-        return results[:, :, 0], results[:, :, 1:]
-
     def duals(self, shared: Array, own: Array, seeds: Array, rows: int | None = None) -> Array:
         """Outputs and their slopes (rows, outputs, 1 + directions); outputs come first.
 
@@ -142,22 +131,17 @@ class Program:
         shared, own = (np.ascontiguousarray(part, dtype=float) for part in (shared, own))
         if not directions:
             results = np.empty((*size, 1))
-            _MACHINE.run(
+            COMPILED.run(
                 self._runnable(None), shared, shared.shape[1], own, np.empty(0), 0, results
             )
             return results
+        width = -(-directions // WIDTH) * WIDTH
+        padded = np.zeros((*seeds.shape[:2], width))
+        padded[:, :, :directions] = seeds
+        results = np.empty((*size, 1 + width))
         runnable = self._runnable(seeds.any(axis=(0, 2)))
-        parts: list[Array] = []
-        for first in range(0, directions, WIDTHS[-1]):
-            part = seeds[:, :, first : first + WIDTHS[-1]]
-            used = part.shape[2]
-            width = next(width for width in WIDTHS if width >= used)
-            padded = np.zeros((*part.shape[:2], width))
-            padded[:, :, :used] = part
-            results = np.empty((*size, 1 + width))
-            _MACHINE.run(runnable, shared, shared.shape[1], own, padded, width, results)
-            parts.append(results[:, :, 1 if parts else 0 : 1 + used])
-        return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
+        COMPILED.run(runnable, shared, shared.shape[1], own, padded, width, results)
+        return results[:, :, : 1 + directions]
 
     def repeated(
         self, point: Array, states: int, columns: Sequence[int] | None = None
@@ -180,7 +164,7 @@ class Program:
         moving = np.isin(np.arange(self.inputs), places)
         count = len(self.outputs)
         results = np.zeros(count if columns is None else (count, states))
-        prepared: Callable[[float, Array], Array] = _MACHINE.prepare(
+        prepared: Callable[[float, Array], Array] = COMPILED.prepare(
             self._runnable(moving), states, places, point, results, columns is not None
         )
         return prepared
@@ -218,7 +202,7 @@ class Program:
         """
         code, active = self.code.copy(), np.zeros(self.slots, dtype=np.uint8)
         active[: self.inputs] = moving
-        _MACHINE.follow(code, active, self.slots)
+        COMPILED.follow(code, active, self.slots)
         ends = np.append(active, np.zeros(len(self.constants), dtype=np.uint8))[self.outputs]
         return code, np.where(self.frozen, 0, ends).astype(np.int32)
 
@@ -231,7 +215,7 @@ class Program:
         key = b"" if moving is None else moving.tobytes()
         if key not in self._checked:
             code, varies = (self.code, self.frozen) if moving is None else self.along(moving)
-            self._checked[key] = _MACHINE.checked(
+            self._checked[key] = COMPILED.checked(
                 code, self.extra, self.outputs, varies, self.constants, self.slots, self.inputs
             )
         return self._checked[key]

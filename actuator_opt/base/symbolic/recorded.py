@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from ..numeric import STEP, Array
+from ..numeric import STEP, Array, complexed, duals_of, group_starts, group_width
 from . import program as programs, program_store
 from .arrays import Recorder, elements
-from .program import Program
+from .program import NOTHING, Program
 from .program_store import MOST_RECORDINGS, Recording
 
 FEW = 20
@@ -164,21 +164,25 @@ class RecordedFunction:
     def _slopes(self, points: Array) -> Array:
         """Results with their complex steps; points with equal real parts are evaluated together."""
         assert self.recording is not None
-        new = np.append(True, (points.real[:, 1:] != points.real[:, :-1]).any(axis=0))
-        firsts = np.flatnonzero(new)
-        count, width = len(firsts), len(new) // len(firsts)
-        if len(new) % count or not new[::width].all():  # groups of different sizes
-            parts = np.split(points, firsts[1:], axis=1)
+        width = group_width(points)
+        if width is None:
+            parts = np.split(points, group_starts(points)[1:], axis=1)
             return np.concatenate([self._slopes(part) for part in parts], axis=1)
-        steps = points.imag.reshape(-1, count, width).transpose(1, 0, 2) / STEP
-        values, slopes = self.recording.program.slopes(points.real[:, firsts].T, steps)
-        holds = self.recording.holds(values)
-        rows: Array = np.empty((self.recording.rows, count, width), dtype=complex)
-        rows.real = values[:, : len(rows)].T[:, :, None]
-        rows.imag = STEP * slopes[:, : len(rows)].transpose(1, 0, 2)
-        joined: Array = rows.reshape(len(rows), -1)
-        self._complete(points, joined, np.repeat(holds, width))
-        return joined
+        found, holds = self._run(duals_of(points, width))
+        rows = complexed(found)
+        self._complete(points, rows, np.repeat(holds, width))
+        return rows
+
+    def _run(self, inputs: Array) -> tuple[Array, Array]:
+        """Results with slopes (rows, k, 1 + directions), and whether each point holds (k,).
+
+        The recording runs; inputs have slopes, too (inputs, k, 1 + directions).
+        """
+        assert self.recording is not None
+        own, seeds = inputs[:, :, 0].T, inputs[:, :, 1:].transpose(1, 0, 2)
+        found = self.recording.program.duals(NOTHING, own, seeds)
+        holds = self.recording.holds(found[:, :, 0])
+        return found[:, : self.recording.rows].transpose(1, 0, 2), holds
 
     def _complete(self, points: Array, rows: Array, holds: Array) -> None:
         """Call the function itself for points on unrecorded branches; if many, record it again."""

@@ -227,19 +227,20 @@ class CycleFatigue:
             np.concatenate([metal[..., 1], square]),
             np.concatenate([metal[..., 2], -square]),
         )
-        factors = [each, *(count * slope * some for slope, some in zip(by_end, kept, strict=True))]
+        by_input = [each, *(count * x * some for x, some in zip(by_end, kept, strict=True))]
+        factors = np.concatenate(by_input, axis=1)
+        steps = np.concatenate(
+            [x[..., 1:] for x in (ends.times, ends.largest, ends.smallest)], axis=1
+        )
         for load in range(len(self._loads)):
-            parts = np.flatnonzero(self._load == load)
-            steps = (end[load, :, :, 1:] for end in (ends.times, ends.largest, ends.smallest))
-            result[parts, :, 1:] = sum(
-                _summed(factor[parts], step) for factor, step in zip(factors, steps, strict=True)
-            )
-        by_number = [
-            (row, slice(self._metal), metal[..., 3 + k]) for k, row in enumerate(self._stress)
-        ]
-        for rows, some, slope in [*by_number, (self._life, bolts, -cube / life)]:
-            factor = (count[some] * slope).sum(axis=1)[..., None]
-            result[some, :, 1:] += factor * numbers[rows, :, 1:]
+            parts = self._load == load
+            result[parts, :, 1:] = _summed(factors[parts], steps[load])
+        for rows, some, slopes in (
+            (self._stress, slice(self._metal), metal[..., 3:]),
+            (self._life[None], bolts, (-cube / life)[..., None]),
+        ):
+            sums = np.einsum("pcn,pcnk->kpn", count[some], slopes)
+            result[some, :, 1:] += np.einsum("kpn,kpnd->pnd", sums, numbers[rows][..., 1:])
         return result
 
     def _metal_damage(

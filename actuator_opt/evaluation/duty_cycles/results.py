@@ -15,7 +15,16 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...base.numeric import STEP, Array, real, sorted_unique, where
+from ...base.numeric import (
+    Array,
+    complexed,
+    duals_of,
+    group_starts,
+    group_width,
+    real,
+    sorted_unique,
+    where,
+)
 from ...base.quantities import Sense
 from ...base.symbolic.recorded import RecordedFunction
 from ...design.cycle_record import CycleRecord
@@ -97,18 +106,6 @@ def results_in(v: Values) -> dict[Place, Array]:
     }
 
 
-def _firsts(points: Array) -> npt.NDArray[np.intp]:
-    """First columns of the groups with equal real parts."""
-    new = np.append(True, (points.real[:, 1:] != points.real[:, :-1]).any(axis=0))
-    return np.flatnonzero(new)
-
-
-def width_of(points: Array) -> int | None:
-    """Size of the groups of columns with equal real parts; None if they differ in size."""
-    sizes = np.diff(np.append(_firsts(points), points.shape[1]))
-    return int(sizes[0]) if (sizes == sizes[0]).all() else None
-
-
 class CycleModels:
     """Results of all cycles of a design structure, for any numbers.
 
@@ -168,37 +165,45 @@ class CycleModels:
         points : the numbers
         width : number of neighbouring complex columns that are directions of one design; None:
             those with equal real parts
+        wanted : see `duals`
+        """
+        if not np.iscomplexobj(points):
+            return self.duals(points[:, :, None], wanted)[:, :, 0]
+        width = width or group_width(points)
+        if width is None:  # different numbers of directions
+            parts = np.split(points, group_starts(points)[1:], axis=1)
+            return np.concatenate([self(part, None, wanted) for part in parts], axis=1)
+        return complexed(self.duals(duals_of(points, width), wanted))
+
+    def duals(self, numbers: Array, wanted: Array | None = None) -> Array:
+        """Results with slopes (places, designs, 1 + directions) at numbers that have slopes, too.
+
+        Parameters
+        ----------
+        numbers : (numbers, designs, 1 + directions)
         wanted : whether each result is wanted (places,); others may be 0. None: all
         """
-        directions = 0
-        if np.iscomplexobj(points):
-            width = width or width_of(points)
-            if width is None:  # different numbers of directions
-                parts = np.split(points, _firsts(points)[1:], axis=1)
-                rows = [self(part, part.shape[1], wanted) for part in parts]
-                return np.concatenate(rows, axis=1)
-            directions = width
-        values = points.real[:, :: max(directions, 1)]
-        seeds = points.imag.reshape(*values.shape, directions) / STEP if directions else None
+        count, size = numbers.shape[1:]
+        if size == 1 and count > 1:  # limits that a study changes are no numbers of a cycle
+            numbers, place = _distinct(numbers)
+            if numbers.shape[1] < count:
+                return self.duals(numbers, wanted)[:, place]
         longest = max(len(record.time) for record in self.records.values())
-        most = max(1, MOST_SAMPLES // (longest * (4 if directions else 1)))
+        most = max(1, MOST_SAMPLES // (longest * (4 if size > 1 else 1)))
         blocks = []
         with np.errstate(all="ignore"):
-            for at in range(0, values.shape[1], most):
-                part = values[:, at : at + most]
-                seed = np.zeros((*part.shape, 0)) if seeds is None else seeds[:, at : at + most]
-                blocks.append(self._results(part, seed, wanted))
-        duals = np.concatenate(blocks, axis=1)
-        if seeds is None:
-            return duals[:, :, 0]
-        return complexed(duals).reshape(len(duals), -1)
+            for at in range(0, count, most):
+                part = numbers[:, at : at + most]
+                blocks.append(self._results(part, wanted))
+        return blocks[0] if len(blocks) == 1 else np.concatenate(blocks, axis=1)
 
     def tracks(self, values: Array) -> dict[str, SampleResults]:
         """Results of all samples of every cycle, at numbers (numbers, designs)."""
         return {name: cycle.samples(values) for name, cycle in self._cycles.items()}
 
-    def _results(self, values: Array, seeds: Array, wanted: Array | None) -> Array:
-        """Results with slopes (places, designs, 1 + directions) at values (numbers, designs)."""
+    def _results(self, numbers: Array, wanted: Array | None) -> Array:
+        """Results of `duals` of designs that are computed together."""
+        values, seeds = numbers[:, :, 0], numbers[:, :, 1:]
         wanted = np.ones(len(self.places), dtype=bool) if wanted is None else wanted
         ends = np.cumsum([len(cycle.keys) for cycle in self._cycles.values()])
         parts = dict(zip(self._cycles, np.split(wanted, ends), strict=False))
@@ -223,35 +228,21 @@ class CycleModels:
             blocks.append(np.zeros((len(self._fatigue.keys), *shape)))
         rest = np.zeros((1, *shape))
         if wanted[-1]:
-            u = dict(zip(self.names, stepped(values, seeds), strict=True))
-            columns = shape[0] * max(shape[1] - 1, 1)
-            leakage = np.broadcast_to(leakage_at_rest(self.plan, u), (1, columns))
-            rest = duals_of(leakage, shape[0])
+            columns = complexed(numbers) if seeds.size else values
+            u = dict(zip(self.names, columns, strict=True))
+            leakage = np.broadcast_to(leakage_at_rest(self.plan, u), (1, columns.shape[1]))
+            rest = duals_of(leakage, shape[1] - 1) if seeds.size else leakage[:, :, None]
         return np.concatenate([*blocks, rest])
 
 
-def stepped(values: Array, seeds: Array) -> Array:
-    """Numbers (numbers, columns), complex if there are directions."""
-    if not seeds.shape[2]:
-        return values
-    complexes: Array = (values[:, :, None] + 1j * STEP * seeds).reshape(len(values), -1)
-    return complexes
-
-
-def duals_of(rows: Array, designs: int) -> Array:
-    """Values and slopes (rows, designs, 1 + directions) of rows (rows, columns)."""
-    if not np.iscomplexobj(rows):
-        return rows[:, :, None]
-    columns = rows.reshape(len(rows), designs, -1)
-    return np.concatenate([columns.real[:, :, :1], columns.imag / STEP], axis=2)
-
-
-def complexed(part: Array) -> Array:
-    """Values and slopes (..., 1 + directions) as complex numbers (..., directions)."""
-    result = np.empty((*part.shape[:-1], part.shape[-1] - 1), dtype=complex)
-    result.real = part[..., :1]
-    result.imag = STEP * part[..., 1:]
-    return result
+def _distinct(numbers: Array) -> tuple[Array, npt.NDArray[np.intp]]:
+    """The designs with different numbers (numbers, distinct, 1), and the place of each there."""
+    columns = np.ascontiguousarray(numbers[:, :, 0].T)
+    known: dict[bytes, int] = {}
+    place = np.array([known.setdefault(column.tobytes(), len(known)) for column in columns])
+    firsts = np.zeros(len(known), dtype=np.intp)
+    firsts[place[::-1]] = np.arange(len(place))[::-1]
+    return numbers[:, firsts], place
 
 
 class _Cycle:

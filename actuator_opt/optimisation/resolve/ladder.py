@@ -37,6 +37,9 @@ The start lies on the straight line through both optima, beyond the other optimu
 the distance between them. The ridge that separates them often moves as fast as they do, so a start
 on the other optimum itself could be on the wrong side of the ridge."""
 
+BETWEEN = np.arange(1, 8) / 8
+"""Designs tried between two equally good optima, as shares of the distance (our choice)."""
+
 SAMPLES = 1024
 """Number of points of the sweep for a feasible problem whose optimum is not yet known."""
 
@@ -122,7 +125,9 @@ def resolve_batch(
     for valley in valleys[1:]:
         z = valley.point.z
         start = np.clip(z + BEYOND * (z - point.z), space.lower, space.upper)
-        ends.descend(valley, dict(enumerate(changed.restore(start))))
+        numbers = ends.in_reach_of(valley)
+        restored = changed.subset(numbers).restore(start)
+        ends.descend(valley, dict(zip(numbers, restored, strict=True)))
     single = len(optima) == 1 and len(valleys) == 1  # there are no other optima to exchange
     for _ in range(0 if single else ROUNDS):
         improved = ends.better_designs([valley.point for valley in valleys])
@@ -140,6 +145,7 @@ class _Ends:
     optima: list[Point | None]
     best_feasible: list[Point | None]
     feasible: dict[int, Vector] = field(default_factory=dict)
+    compared: list[Point] = field(default_factory=list)
 
     def descend(self, valley: Valley, starts: Mapping[int, Vector | None]) -> None:
         """Run a descent for each problem that has a start, and store the improved results."""
@@ -154,9 +160,31 @@ class _Ends:
             self.optima[i] = _better(self.optima[i], optimum)
             self.best_feasible[i] = _better(self.best_feasible[i], stop)
 
+    def in_reach_of(self, valley: Valley) -> list[int]:
+        """Numbers of the problems whose optimum in a valley may be better than the one reached.
+
+        The Lagrangian at the valley's optimum, with the multipliers there, estimates the optimum in
+        this valley. It is a lower bound, to second order of the change, where objective and limits
+        are convex (weak duality, [NocedalWright2006] section 12.9).
+        """
+        if valley.prices is None:
+            return list(range(len(self.optima)))
+        rows = self.changed.margins_at([valley.point])[:, 0]
+        multipliers = valley.scale * valley.prices[: valley.rows]
+        estimates = rows[0] - multipliers @ rows[1 : 1 + valley.rows]
+        numbers = zip(estimates, self.optima, strict=True)
+        return [i for i, (estimate, best) in enumerate(numbers) if not estimate >= _beaten(best)]
+
     def better_designs(self, valleys: Sequence[Point]) -> dict[int, Vector]:
-        """For each problem that optima of other problems improve, the best of these optima."""
-        points = [*valleys, *(optimum for optimum in self.optima if optimum is not None)]
+        """For each problem that optima of other problems improve, the best of these optima.
+
+        Optima that were compared before are left out: no problem has become worse since.
+        """
+        reached = [*valleys, *(optimum for optimum in self.optima if optimum is not None)]
+        points = [point for point in reached if not any(point is x for x in self.compared)]
+        self.compared += points
+        if not points:
+            return {}
         rows = self.changed.margins_at(points)
         missed = self.changed.evaluator.violations(rows.reshape(len(rows), -1), "worst")
         missed = missed.reshape(rows.shape[1:])
@@ -192,7 +220,11 @@ def _better(point: Point | None, other: Point | None) -> Point | None:
 
 
 def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
-    """The local optima that a search reached, without the best of them."""
+    """The local optima that a search reached, each of another valley, without the best of them.
+
+    Where a variable does not matter, equally good optima lie side by side in one valley: they are
+    joined by a straight line of designs that are as good. Only one of them counts.
+    """
     points = [
         optimum.x
         for optimum in solution.optima
@@ -200,7 +232,25 @@ def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
         and optimum.residual <= steps.RESIDUAL
         and not np.array_equal(optimum.x, solution.x)
     ]
-    return [evaluator.point(evaluator.space.to_z(x)) for x in points]
+    others: list[Point] = []
+    valleys = [point_of(evaluator, solution)]
+    for x in points:
+        point = evaluator.point(evaluator.space.to_z(x))
+        if not any(_joined(evaluator, point, valley) for valley in valleys):
+            valleys.append(point)
+            others.append(point)
+    return others
+
+
+def _joined(evaluator: Evaluator, first: Point, second: Point) -> bool:
+    """Whether all designs tried between two equally good ones meet the limits and are as good."""
+    room = BETTER * abs(first.objective)
+    if abs(first.objective - second.objective) > room:
+        return False
+    z = first.z[:, None] + np.multiply.outer(second.z - first.z, BETWEEN)
+    rows = evaluator.batch(z)
+    met = evaluator.violations(rows, "worst") <= MET
+    return bool((met & (np.abs(rows[0] - first.objective) <= room)).all())
 
 
 def point_of(evaluator: Evaluator, solution: Solution) -> Point:
