@@ -136,7 +136,7 @@ class RecordedWithDuty(RecordedFunction):
     def __call__(self, points: Array) -> Array:
         """Results (rows, k) at points (inputs, k); results of the duty cycles are computed here."""
         if not self.reason and self.recording is None:
-            self._record(self.present)  # it tells which results are read
+            self._record(self.present)  # which results are read is then known
         before = self.recording
         if before is not None and np.iscomplexobj(points):
             chained = self._chained(points)

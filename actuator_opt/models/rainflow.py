@@ -88,8 +88,8 @@ def repeating_cycles(*, history: Array | Sequence[Array]) -> Cycles:
 class _Pairs(NamedTuple):
     """Samples of the cycles of every history (histories, cycles, 2), and their number."""
 
-    samples: npt.NDArray[np.integer[Any]]
-    count: npt.NDArray[np.integer[Any]]
+    samples: npt.NDArray[Any]
+    number: npt.NDArray[Any]
 
 
 def _compiled(histories: npt.NDArray[np.float64]) -> _Pairs:

@@ -161,7 +161,7 @@ class _Ends:
             self.best_feasible[i] = _better(self.best_feasible[i], stop)
 
     def in_reach_of(self, valley: Valley) -> list[int]:
-        """Numbers of the problems whose optimum in a valley may be better than the one reached.
+        """Numbers of the problems whose optimum in a valley may be better than that reached so far.
 
         The Lagrangian at the valley's optimum, with the multipliers there, estimates the optimum in
         this valley. It is a lower bound, to second order of the change, where objective and limits
