@@ -136,16 +136,37 @@ class _Kinks:
             evaluate=lambda x, parameters: values(parametric.with_columns(parameters), x),
         )
 
+    def rough(self, signs: Vector) -> BoxProblem:
+        """The problem inside a piece, one step from the kinks, whose distances count as straight.
+
+        Its second derivatives lead Newton steps on the piece, at a small part of the effort.
+        """
+        problem = self.evaluator.problem
+        m, step = len(problem.constraint_names), self.step * (self.inward @ signs)
+
+        def evaluate(x: Array) -> PointValues:
+            rows = problem.rows(self._moved(x, step))
+            straight = np.zeros((len(self.rows), x.shape[1]))
+            return PointValues(rows[0], np.concatenate([rows[1 : 1 + m], straight]), rows[1 + m :])
+
+        names = (*problem.constraint_names, *("kink" for _ in self.rows))
+        return replace(
+            problem, evaluate=evaluate, constraint_names=names, start=None, relaxable=None,
+            groups=None,
+        )  # fmt: skip
+
+    def _moved(self, x: Array, move: Vector) -> Array:
+        """Points (n, K), moved by coordinates (nf,) of the solver."""
+        space, moved = self.evaluator.space, np.array(x)
+        log, change = space.logarithmic[:, None], move[:, None]
+        moved[space.free] *= np.exp(np.where(log, change, 0.0))
+        moved[space.free] += np.where(log, 0.0, change * space.scale[:, None])
+        return moved
+
     def _extrapolated(self, problem: BoxProblem, x: Array, step: Vector) -> Array:
         """Rows (rows, K) at points (n, K), extrapolated along a step (nf,) into a piece."""
-        space = self.evaluator.space
-        results = []
-        for count in range(1, 1 + len(WEIGHTS)):
-            move = count * step[:, None]
-            moved, log = np.array(x), space.logarithmic[:, None]
-            moved[space.free] *= np.exp(np.where(log, move, 0.0))
-            moved[space.free] += np.where(log, 0.0, move * space.scale[:, None])
-            results.append(problem.rows(moved))
+        counts = range(1, 1 + len(WEIGHTS))
+        results = [problem.rows(self._moved(x, count * step)) for count in counts]
         total = np.tensordot(WEIGHTS, np.stack(results), axes=1)
         return np.where(np.isfinite(results[0]), total, results[0])  # an unloaded part: infinite
 
@@ -186,14 +207,11 @@ def _kinks_near(evaluator: Evaluator, point: Point, distance: float) -> _Kinks |
     return _Kinks(evaluator, point.z, chosen, np.flatnonzero(used)[rows], step)
 
 
-def _smooth_problems(
-    parametric: ParametricProblem, evaluator: Evaluator, point: Point, distance: float
-) -> Iterator[ParametricProblem]:
-    """The smooth problem on every piece beside the kinks near a point; none without kinks."""
-    kinks = _kinks_near(evaluator, point, distance)
+def _sides(kinks: _Kinks | None) -> Iterator[Vector]:
+    """The sides of all pieces (k,) beside some kinks; none without kinks."""
     if kinks is not None:
         for signs in itertools.product((1.0, -1.0), repeat=len(kinks.rows)):
-            yield kinks.piece(parametric, np.array(signs))
+            yield np.array(signs)
 
 
 def pieces(
@@ -214,8 +232,10 @@ def pieces(
     if whole.residual <= RESIDUAL or not evaluator.exact or not is_met(point):
         return result
     proven = []
-    for problem in _smooth_problems(parametric, evaluator, point, BESIDE):
-        piece = _piece(problem, point, objective_scale)
+    kinks = _kinks_near(evaluator, point, BESIDE)
+    for signs in _sides(kinks):
+        assert kinks is not None
+        piece = _piece(kinks.piece(parametric, signs), point, objective_scale)
         if not is_met(piece.point) or piece.quality.residual > RESIDUAL:
             return result
         proven.append(piece)
@@ -271,8 +291,12 @@ def optimum_beside(evaluator: Evaluator, point: Point) -> Point | None:
 def _ends(evaluator: Evaluator, point: Point, distance: float) -> Iterator[Point]:
     """The feasible points at which Newton steps end on each piece beside the kinks near a point."""
     parametric = ParametricProblem.of(evaluator.problem)
-    for smooth in _smooth_problems(parametric, evaluator, point, distance):
-        beside = Evaluator(smooth.problem)
-        end = evaluator.point(kkt.polish(beside, beside.point(point.z), tolerance=EXACT).z)
+    kinks = _kinks_near(evaluator, point, distance)
+    for signs in _sides(kinks):
+        assert kinks is not None
+        beside = Evaluator(kinks.piece(parametric, signs).problem)
+        curved = Evaluator(kinks.rough(signs))
+        start = beside.point(point.z)
+        end = evaluator.point(kkt.polish(beside, start, tolerance=EXACT, curved=curved).z)
         if is_met(end):
             yield end

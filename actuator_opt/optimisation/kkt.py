@@ -376,11 +376,18 @@ def state_at(evaluator: Evaluator, point: Point) -> NewtonState:
 
 
 def polish(
-    evaluator: Evaluator, start: Point, *, iterations: int = 12, tolerance: float = 1e-13
+    evaluator: Evaluator,
+    start: Point,
+    *,
+    iterations: int = 12,
+    tolerance: float = 1e-13,
+    curved: Evaluator | None = None,
 ) -> Point:
     """Improve a point by Newton steps; return the start if no better point is reached.
 
-    The steps end once the measure of optimality (see `NewtonState`) is below `tolerance`.
+    The steps end once the measure of optimality (see `NewtonState`) is below `tolerance`. Second
+    derivatives come from `curved`, by default the same evaluator: rough ones cost steps, not
+    accuracy.
     """
     if not start.valid or evaluator.space.size == 0:
         return start
@@ -390,7 +397,7 @@ def polish(
         for _ in range(iterations):
             if state.measure <= tolerance:
                 break
-            following = _advance(evaluator, state)
+            following = _advance(evaluator, state, curved or evaluator)
             if following is None:
                 break
             state = following
@@ -421,14 +428,14 @@ def acceptable(evaluator: Evaluator, initial: NewtonState, newton_state: NewtonS
     return newton_state.point.objective <= initial.point.objective + 2 * allowance + room
 
 
-def _advance(evaluator: Evaluator, state: NewtonState) -> NewtonState | None:
-    """One accepted Newton step, or None if no step improves the point."""
+def _advance(evaluator: Evaluator, state: NewtonState, curved: Evaluator) -> NewtonState | None:
+    """One accepted Newton step, or None if no step improves the point; see `polish`."""
     point, space = state.point, evaluator.space
     step, price = quadratic_step(
         evaluator,
         point,
         state.scale,
-        _hessian_of_step(evaluator, state),
+        _hessian_of_step(evaluator, state, curved),
         state.equality_multipliers,
     )
     longest = float(np.abs(step).max(initial=0.0))
@@ -488,7 +495,7 @@ def quadratic_step(
     return shift + basis @ inner, 2 * highest + 1.0
 
 
-def _hessian_of_step(evaluator: Evaluator, state: NewtonState) -> Vector:
+def _hessian_of_step(evaluator: Evaluator, state: NewtonState, curved: Evaluator) -> Vector:
     """Scaled convex Hessian for a Newton step.
 
     Where every limit with a multiplier is reached, only the directions along these limits count,
@@ -497,11 +504,11 @@ def _hessian_of_step(evaluator: Evaluator, state: NewtonState) -> Vector:
     m, active = evaluator.constraint_count, state.active
     significant = state.multipliers > SIGNIFICANT * state.scale
     if np.any(np.abs(active.margins[significant]) > REACHED):
-        return convex_hessian(evaluator, state)
+        return convex_hessian(curved, state)
     equalities = evaluator.jacobian(state.point)[1 + m :]
     rows = np.concatenate([active.gradients[significant], equalities])
     free = null_space(rows, evaluator.space.size)
-    products = evaluator.hessian_products(state.point, state.weights(m), free) / state.scale
+    products = curved.hessian_products(state.point, state.weights(m), free) / state.scale
     largest = float(state.multipliers.max(initial=0.0)) / state.scale
     return convex_matrix(free, products, largest)
 
