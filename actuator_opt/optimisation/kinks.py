@@ -114,7 +114,7 @@ class _Kinks:
         lengths = [float(np.linalg.norm(jump) * np.sign(jump @ steps[0])) for jump in jumps]
 
         def values(problem: BoxProblem, x: Array) -> PointValues:
-            here, *beyond = (self._extrapolated(problem, x, step) for step in steps)
+            here, *beyond = self._extrapolated(problem, x, steps)
             distances = [
                 (here[i] - other[i]) / (length or np.inf)
                 for i, other, length in zip(self.rows, beyond, lengths, strict=True)
@@ -133,7 +133,9 @@ class _Kinks:
         return replace(
             parametric,
             problem=smooth,
-            evaluate=lambda x, parameters: values(parametric.with_columns(parameters), x),
+            evaluate=lambda x, parameters: values(
+                parametric.with_columns(np.tile(parameters, len(steps) * len(WEIGHTS))), x
+            ),
         )
 
     def rough(self, signs: Vector) -> BoxProblem:
@@ -163,12 +165,17 @@ class _Kinks:
         moved[space.free] += np.where(log, 0.0, change * space.scale[:, None])
         return moved
 
-    def _extrapolated(self, problem: BoxProblem, x: Array, step: Vector) -> Array:
-        """Rows (rows, K) at points (n, K), extrapolated along a step (nf,) into a piece."""
+    def _extrapolated(self, problem: BoxProblem, x: Array, steps: list[Vector]) -> list[Array]:
+        """Rows (rows, K) at points (n, K), extrapolated along each step (nf,) into a piece."""
         counts = range(1, 1 + len(WEIGHTS))
-        results = [problem.rows(self._moved(x, count * step)) for count in counts]
-        total = np.tensordot(WEIGHTS, np.stack(results), axes=1)
-        return np.where(np.isfinite(results[0]), total, results[0])  # an unloaded part: infinite
+        moved = [self._moved(x, count * step) for step in steps for count in counts]
+        rows = problem.rows(np.concatenate(moved, axis=1))
+        results = []
+        for part in np.split(rows, len(steps), axis=1):
+            each = np.stack(np.split(part, len(counts), axis=1))
+            total = np.tensordot(WEIGHTS, each, axes=1)
+            results.append(np.where(np.isfinite(each[0]), total, each[0]))  # unloaded: infinite
+        return results
 
 
 def _flipped(signs: Vector) -> list[Vector]:
@@ -244,6 +251,7 @@ def pieces(
 
 def _piece(parametric: ParametricProblem, point: Point, objective_scale: float) -> Piece:
     evaluator = Evaluator(parametric.problem)
+    evaluator.eager = True
     here = evaluator.point(point.z)
     quality = kkt.check(evaluator, here, objective_scale=objective_scale)
     return Piece(parametric, evaluator, here, quality)
@@ -273,17 +281,17 @@ def check(
     )
 
 
-def optimum_beside(evaluator: Evaluator, point: Point) -> Point | None:
+def optimum_beside(evaluator: Evaluator, point: Point, *, near: bool = True) -> Point | None:
     """An optimum on or beside a kink near a feasible point; None if there is none.
 
     Newton steps on each piece end on the kink if the optimum is there. A point that is an optimum
-    without regard to kinks needs none.
+    without regard to kinks needs none. Without `near`, only kinks through the point count.
     """
     if not evaluator.exact or not is_met(point):
         return None
     if kkt.check(evaluator, point).residual <= RESIDUAL:
         return None
-    starts = itertools.chain([point], _ends(evaluator, point, NEAR))
+    starts = itertools.chain([point], _ends(evaluator, point, NEAR) if near else ())
     ends = (end for start in starts for end in _ends(evaluator, start, BESIDE))
     return next((end for end in ends if check(evaluator, end).residual <= RESIDUAL), None)
 
@@ -295,8 +303,10 @@ def _ends(evaluator: Evaluator, point: Point, distance: float) -> Iterator[Point
     for signs in _sides(kinks):
         assert kinks is not None
         beside = Evaluator(kinks.piece(parametric, signs).problem)
+        beside.eager = True
         curved = Evaluator(kinks.rough(signs))
         start = beside.point(point.z)
-        end = evaluator.point(kkt.polish(beside, start, tolerance=EXACT, curved=curved).z)
+        polished = kkt.polish(beside, start, tolerance=EXACT, curved=curved)
+        end = evaluator.point(polished.z)
         if is_met(end):
             yield end

@@ -170,6 +170,7 @@ def solve(
     keep_interrupted: bool = False,
     stop: Callable[[], bool] | None = None,
     check: bool = True,
+    only_best: bool = False,
 ) -> Solution:
     """Find the best point of a problem.
 
@@ -187,6 +188,8 @@ def solve(
     stop : called before every evaluation of a descent; if it returns True, the search ends with the
         best point so far
     check : whether gradients are compared with finite differences before they are used
+    only_best : whether runs that end above a known optimum are left as they are, instead of
+        refined to local optima
 
     Raises
     ------
@@ -197,7 +200,7 @@ def solve(
     evaluator = Evaluator(
         problem, max_evaluations=max_evaluations, max_seconds=max_seconds, stop=stop
     )
-    search = Descents(evaluator, seed)
+    search = Descents(evaluator, seed, only_best=only_best)
     if evaluator.space.size == 0:
         return _fixed(search)
     swept = _nothing(evaluator)

@@ -298,12 +298,14 @@ def search_near(
             return None
         feasible_z = restored.z
     feasible = changed.point(feasible_z)
-    optimum = optimum_near(changed, feasible)
+    optimum = optimum_near(changed, feasible, near=False)
     if optimum is not None:
         return optimum
     further = [p.x for p in (feasible, *starts)]
     for samples in (0, SAMPLES):
-        solution = solve(problem, starts=len(further), samples=samples, more_starts=further)
+        solution = solve(
+            problem, starts=len(further), samples=samples, more_starts=further, only_best=True
+        )
         if (
             solution.feasible
             and solution.kkt is not None
@@ -317,13 +319,13 @@ def search_near(
     return feasible
 
 
-def optimum_near(evaluator: Evaluator, feasible: Point) -> Point | None:
+def optimum_near(evaluator: Evaluator, feasible: Point, *, near: bool = True) -> Point | None:
     """The optimum that Newton steps from a feasible point reach, perhaps on a kink; None if none.
 
-    It is at least as good as the feasible point.
+    It is at least as good as the feasible point. `near` is that of `kinks.optimum_beside`.
     """
     polished = polish(evaluator, feasible, iterations=8, tolerance=1e-10)
-    end = kinks.optimum_beside(evaluator, polished) or polished
+    end = kinks.optimum_beside(evaluator, polished, near=near) or polished
     return end if _optimal(evaluator, end) and _lower(end, feasible) else None
 
 

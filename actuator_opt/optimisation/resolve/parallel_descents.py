@@ -74,9 +74,10 @@ class SearchResult:
 class Descents:
     """State of a search by local runs: the evaluator, the results so far and the warnings."""
 
-    def __init__(self, evaluator: Evaluator, seed: int) -> None:
+    def __init__(self, evaluator: Evaluator, seed: int, *, only_best: bool = False) -> None:
         self.evaluator = evaluator
         self.seed = seed
+        self.only_best = only_best
         self.optima: list[SearchResult] = []
         self.records: list[StartRecord] = []
         self.warnings: list[str] = []
@@ -147,7 +148,7 @@ class Descents:
         self.records.append(
             StartRecord(start.x, optimum.point.objective, optimum.point.violation, name, count)
         )
-        return optimum.good
+        return optimum.good or self._beaten(optimum.point)
 
     def restore(self, point: Point, *, start: Point) -> None:
         """Minimise the worst violation; if that gives a feasible point, descend from it."""
@@ -171,7 +172,8 @@ class Descents:
     def finish(self, point: Point, algorithm: str) -> SearchResult:
         """Refine a point by Newton steps, and add it to the optima."""
         polished = polish(self.evaluator, point)
-        polished = kinks.optimum_beside(self.evaluator, polished) or polished
+        if not self._beaten(polished):
+            polished = kinks.optimum_beside(self.evaluator, polished) or polished
         if polished is not point:
             algorithm = f"{algorithm}, {FINISH}"
         optimum = self.same(polished) if polished.valid else None
@@ -181,6 +183,11 @@ class Descents:
         optimum = SearchResult(polished, self.residual(polished), algorithm)
         self.optima.append(optimum)
         return optimum
+
+    def _beaten(self, point: Point) -> bool:
+        """Whether a known optimum is as good as a point, if only the best optimum counts."""
+        objectives = [optimum.point.objective for optimum in self.optima if optimum.good]
+        return self.only_best and min(objectives, default=np.inf) <= point.objective
 
     def complete(self) -> None:
         """Continue from the best feasible point if it is no optimum yet; an optimum replaces it.
