@@ -99,12 +99,12 @@ evenly both count)."""
 
 
 def load_mode(*, model: LinearActuator) -> Mode:
-    """Mode of the load on the oil: the pair of poles that damps the motion of the load least.
+    """Mode of the load on the oil: its least damped pair of poles.
 
     omega^2 = lambda_1 lambda_2, zeta = -(lambda_1 + lambda_2)/(2 omega) of each pair. After a blow
     on the load, its speed is the sum of p_i e^(lambda_i t), with p_i = m lambda_i M/N' at lambda_i;
     all p_i together are 1. A pair that oscillates has the share p = p_1 + p_2. It counts with
-    1 - h (1 - zeta); the weight h rises from 0 to 1 between p = 0.05 and p = 0.25
+    zeta + (1 - h) (1 - zeta); the weight h rises from 0 to 1 between p = 0.05 and p = 0.25
     (`SHARES_THAT_COUNT`). The less the load takes part, the less a pair lowers the result. The
     least value counts.
 
@@ -157,7 +157,9 @@ def load_mode(*, model: LinearActuator) -> Mode:
         )
         weight = _weight(lifted, found)
         score = np.where(
-            swings & (found.imaginary > 0) & (weight > 0), 1 - weight * (1 - ratio), math.inf
+            swings & (found.imaginary > 0) & (weight > 0),
+            ratio + (1 - weight) * (1 - ratio),
+            math.inf,
         )
         first, second = np.triu_indices(count, 1)
         ceiling = np.where(np.any(swings, axis=-1), 1.0, math.inf)
@@ -183,7 +185,7 @@ def load_mode(*, model: LinearActuator) -> Mode:
         omega = sqrt(where(apart, -product, product))
         ratio = -where(apart, grows, 0.5 * (one.real + two.real)) / omega
         still = where(real(ratio) > ceiling, ceiling, ratio)
-        ratio = where(pair, 1 - _weight(model, one) * (1 - ratio), still)
+        ratio = where(pair, ratio + (1 - _weight(model, one)) * (1 - ratio), still)
         return Mode(where(known, omega / (2 * pi), 0.0), where(known, ratio, ceiling))
 
 
