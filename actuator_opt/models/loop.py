@@ -151,11 +151,8 @@ def load_mode(*, model: LinearActuator) -> Mode:
         size = np.hypot(found.real, found.imaginary)
         swings = np.abs(found.imaginary) > 1e-9 * size
         ratio = -found.real / size
-        lifted = LinearActuator(
-            *(_lifted(p) for p in (model.characteristic, model.mobile, model.drive)),
-            array_of(real(model.mass))[..., None],
-        )
-        weight = _weight(lifted, found)
+        whole, part = model.characteristic, scale(model.mobile, model.mass)
+        weight = _weight(_lifted(whole), _lifted(part), found)
         score = np.where(
             swings & (found.imaginary > 0) & (weight > 0),
             ratio + (1 - weight) * (1 - ratio),
@@ -172,8 +169,8 @@ def load_mode(*, model: LinearActuator) -> Mode:
         every = np.arange(count)
 
         def parts(index: np.ndarray) -> Parts:
-            ordered = (part[..., index] for part in found)
-            return Parts(*(np.take_along_axis(part, best, axis=-1)[..., 0] for part in ordered))
+            ordered = (values[..., index] for values in found)
+            return Parts(*(np.take_along_axis(x, best, axis=-1)[..., 0] for x in ordered))
 
         one, two = parts(np.append(every, first)), parts(np.append(every, second))
         pair = best[..., 0] < count
@@ -185,14 +182,14 @@ def load_mode(*, model: LinearActuator) -> Mode:
         omega = sqrt(where(apart, -product, product))
         ratio = -where(apart, grows, 0.5 * (one.real + two.real)) / omega
         still = where(real(ratio) > ceiling, ceiling, ratio)
-        ratio = where(pair, ratio + (1 - _weight(model, one)) * (1 - ratio), still)
+        ratio = where(pair, ratio + (1 - _weight(whole, part, one)) * (1 - ratio), still)
         return Mode(where(known, omega / (2 * pi), 0.0), where(known, ratio, ceiling))
 
 
-def _weight(model: LinearActuator, root: Parts) -> Array:
-    """How much an oscillating pair of poles counts, from its share of the load's motion: 0 to 1."""
-    top = at_point((0.0, *scale(model.mobile, model.mass)), root)
-    low = at_point(tuple(k * c for k, c in enumerate(model.characteristic))[1:], root)
+def _weight(whole: Polynomial, part: Polynomial, root: Parts) -> Array:
+    """Weight of an oscillating pair, 0 to 1, from the load's share s `part`/`whole`' at a root."""
+    top = at_point((0.0, *part), root)
+    low = at_point(tuple(k * c for k, c in enumerate(whole))[1:], root)
     square = low.real * low.real + low.imaginary * low.imaginary
     share = 2 * (top.real * low.real + top.imaginary * low.imaginary) / square
     least, full = SHARES_THAT_COUNT
