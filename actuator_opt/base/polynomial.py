@@ -183,6 +183,20 @@ def at_frequency(polynomial: Polynomial, angular_frequency: Array) -> Parts:
     return Parts(parts[0], parts[1] * angular_frequency)
 
 
+def at_point(polynomial: Polynomial, point: Parts) -> Parts:
+    """Value at a complex point, by Horner's scheme.
+
+    >>> at_point((1.0, 2.0, 3.0), Parts(0.0, 2.0))
+    Parts(real=-11.0, imaginary=4.0)
+    """
+    x, y = point
+    along: Array = 0.0
+    across: Array = 0.0
+    for coefficient in reversed(polynomial):
+        along, across = along * x - across * y + coefficient, along * y + across * x
+    return Parts(along, across)
+
+
 def even_and_odd(polynomial: Polynomial) -> tuple[Polynomial, Polynomial]:
     """Split P(i omega) = E(w) + i omega O(w) into polynomials E and O in w = omega^2."""
     signs = (1.0, -1.0)
@@ -267,14 +281,8 @@ def moved_root(polynomial: Polynomial, root: Parts) -> Parts:
     The root moves by -dP(root)/P'(root), with the complex step dP of the polynomial's value.
     """
     x, y = root
-    value, slope = Parts(0.0, 0.0), Parts(0.0, 0.0)
-    for power in range(len(polynomial) - 1, -1, -1):
-        coefficient = polynomial[power]
-        value = Parts(value.real * x - value.imaginary * y + coefficient,
-                      value.real * y + value.imaginary * x)  # fmt: skip
-        if power:
-            slope = Parts(slope.real * x - slope.imaginary * y + power * real(coefficient),
-                          slope.real * y + slope.imaginary * x)  # fmt: skip
+    value = at_point(polynomial, root)
+    slope = at_point(tuple(k * real(c) for k, c in enumerate(polynomial))[1:], root)
     across, along = value.real - real(value.real), value.imaginary - real(value.imaginary)
     size = slope.real * slope.real + slope.imaginary * slope.imaginary
     return Parts(

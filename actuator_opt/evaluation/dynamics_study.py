@@ -259,7 +259,7 @@ def study(
     weakest = of_case(run.places["weakest position"], index)
     position = sorted_unique(np.append(np.linspace(0.0, stroke, 61), weakest))
     model = motion.model(position)
-    along = motion.mode(model, position)
+    along = loop.load_mode(model=model)
     closed = dynamics.natural_frequency(
         stiffness=motion.springs.stiffness(position), mass=motion.mass
     )
@@ -312,7 +312,7 @@ def study(
 
 def _damping_ratio(motion: Motion, there: Array, index: int) -> float:
     """Damping ratio of one load case at a stroke position."""
-    return of_case(motion.mode(motion.model(there), there).damping_ratio, index)
+    return of_case(loop.load_mode(model=motion.model(there)).damping_ratio, index)
 
 
 def _loops(run: ModelRun, design: Design) -> list[_Loop]:

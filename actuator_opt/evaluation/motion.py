@@ -127,10 +127,6 @@ class Motion:
             stiffness=self.springs.per_chamber_stiffness(position), mass=self.mass
         )
 
-    def mode(self, model: LinearActuator, position: Array) -> loop.Mode:
-        """Mode in which the load oscillates on the actuator that holds it."""
-        return loop.load_mode(model=model, near=self.closed_frequency(position))
-
 
 def derive(
     v: Values,
@@ -187,7 +183,7 @@ def compute(
     names, positions = _places(motion.springs.geometry.stroke, weakest)
     model = motion.model(positions)
     if wanted is None or "damping_ratio" in wanted:
-        mode = motion.mode(model, positions)
+        mode = loop.load_mode(model=model)
         out.put("damping_ratio", _by_place(names, mode.damping_ratio, positions))
     _dynamic_stiffness(v, design, model, names, positions, out)
     if motion.spool is None:

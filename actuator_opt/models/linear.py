@@ -49,6 +49,8 @@ class LinearActuator:
     characteristic: Polynomial
     mobile: Polynomial
     drive: Polynomial
+    mass: Array
+    """Mass of the load [kg]."""
 
 
 class _Eliminated(NamedTuple):
@@ -157,7 +159,7 @@ def linear_actuator(
     piston = add(multiply((seal_stiffness, damping), det), multiply((0.0, 1.0), pull))
     mobile = add(det, scale(piston, flexibility))
     characteristic = add(multiply((0.0, 0.0, mass), mobile), piston)
-    return LinearActuator(characteristic, mobile, drive)
+    return LinearActuator(characteristic, mobile, drive, mass)
 
 
 def dynamic_stiffness(*, model: LinearActuator, frequency: Array) -> Parts:

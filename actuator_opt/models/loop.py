@@ -15,12 +15,23 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.dataclass import dataclass
-from ..base.numeric import Array, absolute, angle, array_of, positive, real, sqrt, where
+from ..base.numeric import (
+    Array,
+    absolute,
+    angle,
+    array_of,
+    clip,
+    positive,
+    real,
+    sqrt,
+    where,
+)
 from ..base.polynomial import (
     Parts,
     Polynomial,
     add,
     at_frequency,
+    at_point,
     even_and_odd,
     moved_root,
     multiply,
@@ -81,17 +92,32 @@ def poles(*, model: LinearActuator) -> np.ndarray:
     return roots(_without_integrators(model.characteristic))
 
 
-def load_mode(*, model: LinearActuator, near: Array) -> Mode:
-    """Mode of the load on the oil: the pair of poles next to an expected frequency.
+SHARES_THAT_COUNT = (0.05, 0.25)
+"""Shares of the load's motion from which an oscillating pair of poles counts, and counts in full
+(our choice: oil that oscillates in a line moves the load less, and two pairs that share the load
+evenly both count)."""
 
-    omega^2 = lambda_1 lambda_2, zeta = -(lambda_1 + lambda_2)/(2 omega); if zeta > 1, the mode does
-    not oscillate. If two real poles have unlike signs, the growing pole counts:
-    zeta = -lambda/omega with omega^2 = -lambda_1 lambda_2.
+
+def load_mode(*, model: LinearActuator) -> Mode:
+    """Mode of the load on the oil: its least damped pair of poles.
+
+    omega^2 = lambda_1 lambda_2, zeta = -(lambda_1 + lambda_2)/(2 omega) of each pair. After a blow
+    on the load, its speed is the sum of p_i e^(lambda_i t), with p_i = m lambda_i M/N' at lambda_i;
+    all p_i together are 1. A pair that oscillates has the share p = p_1 + p_2. It counts with
+    zeta + (1 - h) (1 - zeta); the weight h rises from 0 to 1 between p = 0.05 and p = 0.25
+    (`SHARES_THAT_COUNT`). The less the load takes part, the less a pair lowers the result. The
+    least value counts.
+
+    If no such pair oscillates, the two real poles with the smallest ratio count, so zeta >= 1; it
+    is set to 1 while a pair without the load oscillates. Of two poles with unlike signs, the
+    growing one counts: zeta = -lambda/omega with omega^2 = -lambda_1 lambda_2. Where the load runs
+    away without oscillation (a real pole with lambda > 0 and 2 p at least 0.25), this pole counts
+    before all pairs. Elsewhere, the ratio has no jump: not where an oscillation begins or ends,
+    and not where another pair becomes the least damped.
 
     Parameters
     ----------
     model : from `linear.linear_actuator`
-    near : expected frequency, for instance sqrt(k/m)/(2 pi) of the closed cylinder [Hz]
 
     Returns
     -------
@@ -100,67 +126,92 @@ def load_mode(*, model: LinearActuator, near: Array) -> Mode:
 
     Notes
     -----
-    Valid: simple poles; mass > 0.
+    Valid: simple poles; mass > 0. NaN only for a coefficient that is not finite.
 
     References
     ----------
-    [derived] eigenvalues with their derivative -dN(lambda)/N'(lambda)
+    [derived] eigenvalues with their derivative -dN(lambda)/N'(lambda), residues of s M/N
 
     Examples
     --------
     >>> from actuator_opt.models.linear import Side, linear_actuator
     >>> side = Side(area=5e-4, compliance=5e-14)
     >>> model = linear_actuator(side_a=side, side_b=side, mass=10.0, damping=100.0)
-    >>> mode = load_mode(model=model, near=150.0)
+    >>> mode = load_mode(model=model)
     >>> print(f"{mode.natural_frequency:.2f} Hz, {mode.damping_ratio:.4f}")
     159.15 Hz, 0.0050
     """
     polynomial = _without_integrators(model.characteristic)
     found = root_parts(polynomial)
-    near = array_of(real(near))
-    if found.real.shape[-1] < 2:
-        still = 0.0 * near + np.zeros(found.real.shape[:-1])
+    count = found.real.shape[-1]
+    if count < 2:
+        still = np.zeros(found.real.shape[:-1])
         return Mode(still, still + math.inf)
-    shape = np.broadcast_shapes(found.real.shape[:-1], near.shape)
-    found = Parts(*(np.broadcast_to(part, (*shape, part.shape[-1])) for part in found))
-    near = np.broadcast_to(near, shape)
     with np.errstate(all="ignore"):
-        one, two = (moved_root(polynomial, root) for root in _load_pair(found, near))
+        size = np.hypot(found.real, found.imaginary)
+        swings = np.abs(found.imaginary) > 1e-9 * size
+        ratio = -found.real / size
+        whole, part = model.characteristic, scale(model.mobile, model.mass)
+        weight = _weight(_lifted(whole), _lifted(part), found)
+        score = np.where(
+            swings & (found.imaginary > 0) & (weight > 0),
+            ratio + (1 - weight) * (1 - ratio),
+            math.inf,
+        )
+        first, second = np.triu_indices(count, 1)
+        ceiling = np.where(np.any(swings, axis=-1), 1.0, math.inf)
+        size = np.where(swings, math.nan, size)
+        runaway = (found.real > 0) & (weight >= 1)
+        score = np.concatenate([score, _real_pairs(size, runaway, first, second)], axis=-1)
+        best = _least_at(score)
+        known = np.isfinite(np.take_along_axis(score, best, axis=-1)[..., 0])
+        known = known | np.any(np.isnan(found.real), axis=-1)  # NaN in, NaN out
+        every = np.arange(count)
+
+        def parts(index: np.ndarray) -> Parts:
+            ordered = (values[..., index] for values in found)
+            return Parts(*(np.take_along_axis(x, best, axis=-1)[..., 0] for x in ordered))
+
+        one, two = parts(np.append(every, first)), parts(np.append(every, second))
+        pair = best[..., 0] < count
+        two = Parts(two.real, where(pair, -one.imaginary, two.imaginary))
+        one, two = moved_root(polynomial, one), moved_root(polynomial, two)
         product = one.real * two.real - one.imaginary * two.imaginary
         apart = real(product) < 0  # one real pole grows, the other fades: the growing pole counts
         grows = where(real(one.real) > 0, one.real, two.real)
-        omega = where(np.isnan(near), math.nan, sqrt(where(apart, -product, product)))
+        omega = sqrt(where(apart, -product, product))
         ratio = -where(apart, grows, 0.5 * (one.real + two.real)) / omega
-        return Mode(omega / (2 * pi), ratio)
+        still = where(real(ratio) > ceiling, ceiling, ratio)
+        ratio = where(pair, ratio + (1 - _weight(whole, part, one)) * (1 - ratio), still)
+        return Mode(where(known, omega / (2 * pi), 0.0), where(known, ratio, ceiling))
+
+
+def _weight(whole: Polynomial, part: Polynomial, root: Parts) -> Array:
+    """Weight of an oscillating pair, 0 to 1, from the load's share s `part`/`whole`' at a root."""
+    top = at_point((0.0, *part), root)
+    low = at_point(tuple(k * c for k, c in enumerate(whole))[1:], root)
+    square = low.real * low.real + low.imaginary * low.imaginary
+    share = 2 * (top.real * low.real + top.imaginary * low.imaginary) / square
+    least, full = SHARES_THAT_COUNT
+    return clip((share - least) / (full - least), 0.0, 1.0)
+
+
+def _real_pairs(size: Array, runaway: Array, first: np.ndarray, second: np.ndarray) -> Array:
+    """Score of pairs of real poles; the lowest is chosen. Infinite for pairs that are none.
+
+    Pairs in which the load runs away come before every oscillation, whose score is between -1 and
+    1, all others after it. Among these, the closest poles come first.
+    """
+    one, two = size[..., first], size[..., second]
+    close = 2 * np.sqrt(one * two) / (one + two)
+    grow = runaway[..., first] | runaway[..., second]
+    return np.where(close > 0, np.where(grow, -2.0, 2.0) - close, math.inf)
 
 
 def _least_at(values: Array) -> Array:
     """Index of the least value along the last axis, which stays as an axis of length 1."""
     index: Array = np.argmin(values, axis=-1)
     return index[..., None]
-
-
-def _load_pair(found: Parts, near: Array) -> tuple[Parts, Parts]:
-    """The pole nearest to a frequency, with its conjugate or, if it is real, the next real pole."""
-    size = np.hypot(found.real, found.imaginary)
-    swings = np.abs(found.imaginary) > 1e-9 * size
-    far = np.abs(np.log(size / (2 * pi * near[..., None])))
-    far = np.where(np.isfinite(far), far, 1e300)
-    single = np.sum(~swings, axis=-1, keepdims=True) < 2
-    far = np.where(single & ~swings, np.inf, far)
-    first = _least_at(far)
-    others = np.where(swings | (np.arange(far.shape[-1]) == first), np.inf, far)
-    second = _least_at(others)
-    pair: Array = np.take_along_axis(swings, first, axis=-1)
-
-    def parts(index: Array) -> Parts:
-        return Parts(*(np.take_along_axis(part, index, axis=-1)[..., 0] for part in found))
-
-    one, two = parts(first), parts(second)
-    return one, Parts(
-        np.where(pair[..., 0], one.real, two.real),
-        np.where(pair[..., 0], -one.imaginary, two.imaginary),
-    )
 
 
 @dataclass(frozen=True, slots=True)

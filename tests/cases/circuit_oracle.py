@@ -160,6 +160,29 @@ def state_space(circuit):
     return control.ss(matrix, drive, out, np.zeros((1, 2)))
 
 
+def load_damping(circuit):
+    """Damping ratio of the load from the eigenvectors of its differential equations.
+
+    A blow on the load gives it the speed sum of p e^(lambda t); `shares` are these p.
+    """
+    system = state_space(circuit)
+    poles, vectors = np.linalg.eig(system.A)
+    seen = system.C @ vectors
+    caused = np.linalg.solve(vectors, system.B[:, :1])
+    shares = circuit["mass"] * poles * seen[0] * caused[:, 0]
+    moving = np.abs(poles) > 1e-9 * np.median(np.abs(poles))
+    pairs = (poles.imag > 1e-9 * np.abs(poles)) & moving
+    ceiling = 1.0 if pairs.any() else np.inf
+    pairs &= 2 * shares.real > 0.05
+    if pairs.any():
+        ratios = -poles[pairs].real / np.abs(poles[pairs])
+        weights = np.clip((2 * shares[pairs].real - 0.05) / 0.2, 0, 1)
+        return float(np.min(1 - weights * (1 - ratios)))
+    sizes = np.sort(-poles[moving].real)
+    ratios = (sizes[1:] + sizes[:-1]) / (2 * np.sqrt(sizes[1:] * sizes[:-1]))
+    return float(np.min(ratios, initial=ceiling))
+
+
 def spool(natural_frequency, damping_ratio):
     """Second-order spool, o'' = omega^2 (u - o) - 2 zeta omega o', as state space."""
     omega = 2 * np.pi * natural_frequency

@@ -49,8 +49,8 @@ def _stiffness(frequency, **numbers):
     return dynamic_stiffness(model=bare(**numbers), frequency=frequency)
 
 
-def _mode(near, **numbers):
-    return loop.load_mode(model=bare(**numbers), near=near)
+def _mode(**numbers):
+    return loop.load_mode(model=bare(**numbers))
 
 
 def _ultimate(**numbers):
@@ -93,7 +93,7 @@ SAMPLES: dict = {
         (_stiffness, {**DRIVEN, "frequency": frequency}) for frequency in (0.3, 20.0, 400.0)
     ],
     "loop.open_loop": {"model": MODEL, **SPOOL},
-    "loop.load_mode": [(_mode, {**DRIVEN, "near": 130.0})],
+    "loop.load_mode": [(_mode, DRIVEN)],
     "loop.ultimate_gain": [(_ultimate, {**DRIVEN, **SPOOL})],
     "loop.margins": [(_margins, {**DRIVEN, **SPOOL, "gain": 120.0})],
 }  # fmt: skip

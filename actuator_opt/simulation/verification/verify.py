@@ -206,7 +206,7 @@ class LinearTier:
         model = motion.model(place)
         figures = {
             "natural_frequency": self.resonance(case, position),
-            "damping_ratio": of_case(motion.mode(model, place).damping_ratio, case),
+            "damping_ratio": of_case(loop.load_mode(model=model).damping_ratio, case),
         }
         frequency = self.subject.design.load_cases[case].frequency
         if frequency is None:
