@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..base.numeric import Array, complexed, duals_of, group_width, namespace
+from ..base.symbolic import program as programs
 from ..base.symbolic.program import Program
 from ..base.symbolic.program_store import Recording
 from ..base.symbolic.recorded import RecordedFunction
@@ -138,7 +139,7 @@ class RecordedWithDuty(RecordedFunction):
         if not self.reason and self.recording is None:
             self._record(self.present)  # which results are read is then known
         before = self.recording
-        if before is not None and np.iscomplexobj(points):
+        if before is not None and programs.AVAILABLE and np.iscomplexobj(points):
             chained = self._chained(points)
             if chained is not None:
                 return chained

@@ -162,7 +162,9 @@ def load_mode(*, model: LinearActuator) -> Mode:
         ceiling = np.where(np.any(swings, axis=-1), 1.0, math.inf)
         size = np.where(swings, math.nan, size)
         runaway = (found.real > 0) & (weight >= 1)
-        score = np.concatenate([score, _real_pairs(size, runaway, first, second)], axis=-1)
+        score = np.concatenate(
+            [score, _real_pairs(size * np.sign(found.real), runaway, first, second)], axis=-1
+        )
         best = _least_at(score)
         known = np.isfinite(np.take_along_axis(score, best, axis=-1)[..., 0])
         known = known | np.any(np.isnan(found.real), axis=-1)  # NaN in, NaN out
@@ -196,16 +198,18 @@ def _weight(whole: Polynomial, part: Polynomial, root: Parts) -> Array:
     return clip((share - least) / (full - least), 0.0, 1.0)
 
 
-def _real_pairs(size: Array, runaway: Array, first: np.ndarray, second: np.ndarray) -> Array:
+def _real_pairs(poles: Array, runaway: Array, first: np.ndarray, second: np.ndarray) -> Array:
     """Score of pairs of real poles; the lowest is chosen. Infinite for pairs that are none.
 
-    Pairs in which the load runs away come before every oscillation, whose score is between -1 and
-    1, all others after it. Among these, the closest poles come first.
+    A growing and a fading pole are a pair only if the load runs away with one of them. Such pairs
+    come before every oscillation, whose score is between -1 and 1, all others after it. Of
+    these, the closest poles come first.
     """
-    one, two = size[..., first], size[..., second]
-    close = 2 * np.sqrt(one * two) / (one + two)
+    one, two = poles[..., first], poles[..., second]
+    close = 2 * np.sqrt(np.abs(one * two)) / (np.abs(one) + np.abs(two))
     grow = runaway[..., first] | runaway[..., second]
-    return np.where(close > 0, np.where(grow, -2.0, 2.0) - close, math.inf)
+    alike = (one * two > 0) | grow
+    return np.where((close > 0) & alike, np.where(grow, -2.0, 2.0) - close, math.inf)
 
 
 def _least_at(values: Array) -> Array:

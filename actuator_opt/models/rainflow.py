@@ -70,8 +70,9 @@ def repeating_cycles(*, history: Array | Sequence[Array]) -> Cycles:
     (values,) = histories(history)
     numbers = np.asarray(real(values))
     columns = numbers.reshape(len(numbers), -1).T
-    lost = np.flatnonzero(np.isnan(columns.sum(axis=1)))
-    first = np.argmax(np.isnan(columns[lost]), axis=1)
+    unknown = np.isnan(columns)
+    lost = np.flatnonzero(unknown.any(axis=1))
+    first = np.argmax(unknown[lost], axis=1)
     if len(lost):
         columns = columns.copy()
         columns[lost] = 0.0  # constant: without cycles

@@ -100,8 +100,8 @@ class Cures:
     """Single changes that each make the design feasible, and the PATHs that were not tried.
 
     `together` has dimensions, and bounds of variables, that make the design feasible only if all of
-    them change. `failed` has the changes that were tried but are not enough alone: PATHs of
-    dimensions, and choices with their word.
+    them change; `tried_together` is whether bounds were among those tried. `failed` has the changes
+    that were tried but are not enough alone: PATHs of dimensions, and choices with their word.
     """
 
     dimensions: tuple[Cure, ...] = ()
@@ -109,6 +109,7 @@ class Cures:
     choices: tuple[Cure, ...] = ()
     untried: tuple[str, ...] = ()
     failed: tuple[str, ...] = ()
+    tried_together: bool = False
 
 
 def cures(actuator: ActuatorProblem, conflict: Conflict) -> Cures:

@@ -26,7 +26,7 @@ from . import kkt, repairs
 from .actuator import ActuatorProblem
 from .cures import DIGITS, Cure, Cures, cures, is_property, outward
 from .evaluator import Evaluator, Point
-from .joint_cures import joint_cures
+from .joint_cures import MOST_TOGETHER, joint_cures
 from .problem import BoxProblem, Vector
 from .repairs import NOTHING, WIDEST, Conflict, Opening, RelaxedConstraint
 from .result import Infeasibility
@@ -225,7 +225,8 @@ def _remedies(actuator: ActuatorProblem, conflict: Conflict) -> Cures:
     kept = found.dimensions or found.together or found.choices
     if kept or not conflict.joint or any(bound.needed is not None for bound in conflict.bounds):
         return found
-    return replace(found, together=joint_cures(actuator, conflict.x))
+    together = joint_cures(actuator, conflict.x)
+    return replace(found, together=together, tried_together=True)
 
 
 def _card(
@@ -260,7 +261,7 @@ def _card(
         laws=explanation.laws,
         total=explanation.total,
         sentence=_sentence(joint, sufficient, explanation.laws),
-        evidence=_evidence(explanation, solution),
+        evidence=_evidence(explanation, solution, together=remedies.tried_together),
         cures=tuple(sufficient),
         untried=remedies.untried,
         failed=remedies.failed,
@@ -445,7 +446,7 @@ def _sentence(
     return sentence
 
 
-def _evidence(explanation: Conflict, solution: Solution) -> str:
+def _evidence(explanation: Conflict, solution: Solution, *, together: bool) -> str:
     """Sentence on how far the advice is proven."""
     count = len(solution.starts)
     starts = f"{count} start{'' if count == 1 else 's'}"
@@ -458,6 +459,6 @@ def _evidence(explanation: Conflict, solution: Solution) -> str:
         f"{statement}: this is evidence, not proof. A feasible design confirms each change "
         "listed as enough. The search found no feasible design with smaller changes, nor "
         "with single changes that are not listed. Bounds and fixed dimensions were varied "
-        f"up to {WIDEST:g} times or down to 1/{WIDEST:g} of their value, one at a time; if no such "
-        "change was enough, together"
+        f"up to {WIDEST:g} times or down to 1/{WIDEST:g} of their value, one at a time"
+        + (f"; then together, at most {MOST_TOGETHER} of them" if together else "")
     )

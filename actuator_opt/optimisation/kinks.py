@@ -52,6 +52,9 @@ MOST = 3
 EXACT = 1e-9
 """Measure of optimality at which Newton steps on a piece end (our choice)."""
 
+SAMPLED = 32
+"""Directions into a piece in which its gradients are compared (our choice)."""
+
 WEIGHTS = (3.0, -3.0, 1.0)
 """Factors of the values after one, two and three steps, which extrapolate to no step."""
 
@@ -137,6 +140,30 @@ class _Kinks:
                 parametric.with_columns(np.tile(parameters, len(steps) * len(WEIGHTS))), x
             ),
         )
+
+    def differs(self, piece: Piece, signs: Vector) -> bool:
+        """Whether gradients within a piece differ from its own: it has a further kink.
+
+        They are extrapolated from one and two steps in random directions into the piece.
+        """
+        space, count = self.evaluator.space, len(self.evaluator.problem.constraint_names)
+        directions = np.random.default_rng(0).normal(size=(len(self.z), SAMPLED))
+        directions /= np.linalg.norm(directions, axis=0)
+        across = self.normals @ directions
+        directions += self.inward @ (signs[:, None] * np.abs(across) - across)
+        low, high = self.z - space.lower <= 0, space.upper - self.z <= 0
+        directions[low], directions[high] = np.abs(directions[low]), -np.abs(directions[high])
+        moves = self.step * np.concatenate([directions, 2 * directions], axis=1)
+        slopes = self.evaluator.jacobians(self.z[:, None] + moves, inside=False)
+        found = 2 * slopes[:, :SAMPLED] - slopes[:, SAMPLED:]
+        own = piece.evaluator.jacobian(piece.point)
+        rows = np.flatnonzero(np.abs(piece.point.rows[: 1 + count]) <= kkt.ACTIVE)
+        rows = np.union1d(rows, np.append(0, np.arange(1 + count, len(found))))
+        kept = np.delete(own, 1 + count + np.arange(len(signs)), axis=0)  # without the kinks
+        jumps = np.linalg.norm(np.nan_to_num(found[rows] - kept[rows][:, None]), axis=2)
+        lengths = np.linalg.norm(kept[rows], axis=1)
+        lengths[0] = max(lengths[0], 1e-3 * abs(piece.point.objective))
+        return bool((jumps > JUMP * np.maximum(lengths, 1e-300)[:, None]).any())
 
     def rough(self, signs: Vector) -> BoxProblem:
         """The problem inside a piece, one step from the kinks, whose distances count as straight.
@@ -244,6 +271,8 @@ def pieces(
         assert kinks is not None
         piece = _piece(kinks.piece(parametric, signs), point, objective_scale)
         if not is_met(piece.point) or piece.quality.residual > RESIDUAL:
+            return result
+        if kinks.differs(piece, signs):
             return result
         proven.append(piece)
     return proven or result

@@ -212,19 +212,45 @@ MOST_PARAMETERS = 10
 LEAST_EFFECT = 1e-3
 """A parameter enters the table if its change by 1 % changes the objective by at least this many
 per cent."""
+CLOSE = 1e-3
+"""Largest difference between the optima with few and with all samples of long duty cycles, as a
+share of the objective, with which prices count few samples (our choice)."""
+
 FREE = 1e-9
 """A limit whose value is 0 is left out if its price, relative to the objective, is at most this."""
 
 
-def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensitivity, ...]:
+def priced(
+    actuator: ActuatorProblem, solution: Solution
+) -> tuple[tuple[Sensitivity, ...], tuple[str, ...]]:
+    """Prices as `sensitivities`, and a sentence if they count few samples of long duty cycles.
+
+    They are then those of the optimum with few samples. If a search from the optimum with all
+    samples ends elsewhere, all samples count.
+    """
+    subject = with_few_samples(actuator.subject)
+    if subject is not actuator.subject:
+        few = build(subject)
+        starts = [optimum.x for optimum in solution.optima]
+        problem = replace(few.problem, start=solution.x)
+        near = solve(problem, starts=1 + len(starts), samples=0, more_starts=starts)
+        added = solution.objective - near.objective
+        if near.outcome is Outcome.OPTIMUM and abs(added) <= CLOSE * abs(solution.objective):
+            note = (
+                f"prices count {FEW_SAMPLES} samples of each duty cycle; all other results count "
+                "all samples"
+            )
+            return sensitivities(few, near, added=added), (note,)
+    return sensitivities(actuator, solution), ()
+
+
+def sensitivities(
+    actuator: ActuatorProblem, solution: Solution, *, added: float = 0.0
+) -> tuple[Sensitivity, ...]:
     """Prices of the limits, and of the parameters with the largest effect on the objective.
 
-    With long duty cycles, they are those of the optimum with few of their samples; predicted and
-    re-optimised objectives are changes from there.
+    To predicted and re-optimised objectives, `added` is added.
     """
-    objective = solution.objective
-    actuator, solution = _with_few_samples(actuator, solution)
-    added = objective - solution.objective
     active = _active_limits(actuator, solution)
     limits = dict.fromkeys(
         row.limit_of.path
@@ -267,26 +293,7 @@ def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensit
                 movement=dict(zip(actuator.paths, price.movement.tolist(), strict=True)),
             )
         )
-    return ranked(rows, shown(objective))
-
-
-def _with_few_samples(
-    actuator: ActuatorProblem, solution: Solution
-) -> tuple[ActuatorProblem, Solution]:
-    """The problem with few samples of its duty cycles, and its optimum, if the cycles are long."""
-    subject = with_few_samples(actuator.subject)
-    if subject is actuator.subject:
-        return actuator, solution
-    few = build(subject)
-    near = solve(replace(few.problem, start=solution.x), starts=1, samples=0)
-    return (few, near) if near.outcome is Outcome.OPTIMUM else (actuator, solution)
-
-
-def few_samples_note(actuator: ActuatorProblem) -> tuple[str, ...]:
-    """A sentence if the prices count few samples of the duty cycles."""
-    if with_few_samples(actuator.subject) is actuator.subject:
-        return ()
-    return (f"prices count {FEW_SAMPLES} samples of each duty cycle; all other results count all",)
+    return ranked(rows, shown(solution.objective + added))
 
 
 def _active_limits(actuator: ActuatorProblem, solution: Solution) -> set[str]:

@@ -24,7 +24,7 @@ from .choices import (
     search_choices,
 )
 from .infeasibility import explained
-from .price_table import Sensitivity, few_samples_note, sensitivities
+from .price_table import Sensitivity, priced
 from .result import Certificate, Choices, Infeasibility, Kkt, Optimisation, Rounding, VariableResult
 from .rounding import Wanted, design_at, rounded, sizes_of
 from .solution import Outcome, Solution
@@ -283,6 +283,7 @@ class _FollowUp:
     rounding: Rounding | None = None
     infeasibility: Infeasibility | None = None
     rows: tuple[Sensitivity, ...] = ()
+    notes: tuple[str, ...] = ()
     certificate: Certificate | None = None
 
 
@@ -297,7 +298,7 @@ def _complete(
     if certify and follow_up.solution.feasible:
         follow_up.certificate = certified(actuator, follow_up.solution)
     if prices and follow_up.solution.outcome is Outcome.OPTIMUM:
-        follow_up.rows = sensitivities(actuator, follow_up.solution)
+        follow_up.rows, follow_up.notes = priced(actuator, follow_up.solution)
 
 
 def _result(
@@ -339,7 +340,7 @@ def _result(
             *(f"variable without effect: {name}" for name in solution.without_effect),
             *_idle(actuator),
             *actuator.refusals.warnings(),
-            *(few_samples_note(actuator) if follow_up.rows else ()),
+            *follow_up.notes,
         ),
         seed=seed,
         seconds=time.perf_counter() - began,

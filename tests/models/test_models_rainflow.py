@@ -160,7 +160,11 @@ def test_slopes_are_those_of_the_paired_samples():
 @pytest.mark.skipif(not programs.AVAILABLE, reason="the machine was not built")
 def test_wrong_memory_is_refused():
     """The compiled machine writes only to arrays of the right size."""
-    values, pairs, counts = np.zeros((2, 5)), np.zeros((2, 5, 2), np.int32), np.zeros(2, np.int32)
+    values, pairs, counts = (
+        np.zeros((2, 5)),
+        np.zeros((2, 5, 2), np.int32),
+        np.full(2, -1, np.int32),
+    )
     for bad in (
         (values[:, :4].copy(), pairs, counts),
         (values, pairs, np.zeros(3, np.int32)),
@@ -170,3 +174,10 @@ def test_wrong_memory_is_refused():
             programs.COMPILED.cycles(*bad)
     programs.COMPILED.cycles(np.zeros((2, 0)), pairs[:, :0].copy(), counts)
     assert counts.tolist() == [0, 0]
+
+
+def test_infinite_values_are_counted():
+    """Only an unknown value makes the cycles unknown."""
+    assert values_of([1.0, np.inf, 2.0, -np.inf, 3.0]) == Counter(
+        {(np.inf, -np.inf): 1, (3.0, 1.0): 1}
+    )

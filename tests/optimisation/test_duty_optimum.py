@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
+from actuator_opt.base.symbolic import program as programs
 from actuator_opt.evaluation import evaluate, kernel
 from actuator_opt.evaluation.kernel import duty_numbers
 from actuator_opt.optimisation.actuator import build
@@ -147,3 +148,33 @@ def test_a_search_leaves_other_results_as_they_are(actuator: ao.Actuator) -> Non
     after = evaluate(subject)
     for name, metric in expected.metrics.items():
         assert after[name].value == metric.value, name
+
+
+def test_prices_of_long_cycles_count_few_samples(
+    held: ao.Optimisation, tight: ao.Actuator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They say so, and are close to those of all samples, around the optimum with all."""
+    monkeypatch.setattr(kernel, "MANY_SAMPLES", 50)
+    monkeypatch.setattr(kernel, "FEW_SAMPLES", 50)
+    few = ao.optimise(tight, starts=2)
+    assert any("prices count" in warning for warning in few.warnings)
+    assert not any("prices count" in warning for warning in held.warnings)
+    assert few.objective_value == pytest.approx(held.objective_value, rel=1e-9)
+    row, all_samples = (
+        next(x for x in found.sensitivities if x.parameter == "requirements.duty_supply_share.max")
+        for found in (few, held)
+    )
+    assert row.price == pytest.approx(all_samples.price, rel=0.05)
+    assert row.resolved_10 == pytest.approx(all_samples.resolved_10, rel=0.005)
+
+
+def test_without_the_machine_a_recording_is_not_used(
+    actuator: ao.Actuator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A worker may receive recorded models and have no machine."""
+    problem = build(actuator.subject())
+    x = Evaluator(problem.problem).space.complex_steps(problem.problem.start[:, None])
+    recorded = problem.evaluate(x)
+    monkeypatch.setattr(programs, "AVAILABLE", False)
+    monkeypatch.setattr(programs, "COMPILED", None)
+    assert problem.evaluate(x).constraints == pytest.approx(recorded.constraints, rel=1e-9)

@@ -258,3 +258,18 @@ def test_prices_of_the_knee_on_a_kink(change):
             (solution.objective - row.resolved_down) / step,
         ):
             assert slope == pytest.approx(row.price, rel=30 * change)
+
+
+def test_a_piece_with_a_further_kink_proves_nothing():
+    """The objective falls in a narrow cone between the axes, and rises along them."""
+
+    def objective(x):
+        size = np.where(x[0].real > 0, x[0], -x[0]) + np.where(x[1].real > 0, x[1], -x[1])
+        cone = least(x[1] - 1.7 * x[0], 5.7 * x[0] - x[1])
+        return PointValues(
+            1 + size - 3 * np.where(cone.real > 0, cone, 0), np.empty((0, x.shape[1]))
+        )
+
+    problem = box(objective, 2, low=-1.0, high=1.0)
+    assert objective(np.array([[0.03], [0.1]])).objective < 1
+    assert kinks.check(*at(problem, [0.0, 0.0])).residual > 0.1

@@ -14,7 +14,7 @@
 #define TEXT(name, result) #name,
 static const char *const NAMES[] = {OPERATIONS(TEXT) "roots"};
 
-enum { LANES = 32, MOST_SLOPES = 8192, MOST_TOGETHER = 32, MOST_IN_LANES = 16 };
+enum { LANES = 32, MOST_SLOPES = 8192, DIRECTIONS = 32, DIRECTIONS_IN_LANES = 16 };
 
 #if defined(__GNUC__) && defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
 #define FAST __attribute__((target_clones("arch=x86-64-v3", "default")))
@@ -117,7 +117,7 @@ static int run_values(const Program *p, const Points *x, double *results) {
 }
 
 /* Flags of the operands by which an operation has derivatives. */
-static int sloped(int operation) {
+static int sloped_operands(int operation) {
     switch (operation) {
         case OP_lt: case OP_le: case OP_eq: case OP_and: case OP_or: case OP_not: case OP_isnan:
         case OP_sign: case OP_floor: case OP_roots: return 0;
@@ -139,7 +139,7 @@ static void follow(const Program *p, uint16_t *code, uint8_t *active) {
             for (int j = 0; j < 3; j++)
                 if (at[2 + j] < p->slots && active[at[2 + j]] && !(flags & (FROZEN << j)))
                     flags |= 1 << j;
-            flags &= sloped(OPERATION(at)) | ~(FIRST | SECOND | THIRD);
+            flags &= sloped_operands(OPERATION(at)) | ~(FIRST | SECOND | THIRD);
             if (flags & (FIRST | SECOND | THIRD)) flags |= RESULT;
             active[at[1]] = (flags & RESULT) != 0;
         }
@@ -183,9 +183,9 @@ static void run_some_slopes(const Program *p, const Points *x, Py_ssize_t T, Py_
 static int run_slopes(const Program *p, const Points *x, Py_ssize_t T, const int32_t *varies,
                       double *results) {
     /* several lanes, if there are enough points and all slots stay in fast memory */
-    const Py_ssize_t most = T < MOST_IN_LANES ? T : MOST_IN_LANES;
+    const Py_ssize_t most = T < DIRECTIONS_IN_LANES ? T : DIRECTIONS_IN_LANES;
     const Py_ssize_t L = x->count < 4 || p->slots * most > MOST_SLOPES ? 1 : FOUR;
-    const Py_ssize_t together = L == 1 ? MOST_TOGETHER : MOST_IN_LANES;
+    const Py_ssize_t together = L == 1 ? DIRECTIONS : DIRECTIONS_IN_LANES;
     const Py_ssize_t room = T < together ? T : together;
     double *V = calloc(L * (p->slots + p->constant_count), sizeof(double));
     double *D = calloc(L * p->slots * room, sizeof(double));
@@ -368,9 +368,9 @@ typedef struct {
 /* Columns of derivatives, several at a time: one direction for each input that has derivatives. */
 static void prepared_slopes(Prepared *own) {
     const Program *p = &own->program->p;
-    for (Py_ssize_t first = 0; first < own->width; first += MOST_TOGETHER) {
+    for (Py_ssize_t first = 0; first < own->width; first += DIRECTIONS) {
         const Py_ssize_t left = own->width - first;
-        const Py_ssize_t used = left < MOST_TOGETHER ? left : MOST_TOGETHER;
+        const Py_ssize_t used = left < DIRECTIONS ? left : DIRECTIONS;
         const int T = (int)(used + 3) / 4 * 4;
         memset(own->D, 0, sizeof(double) * p->inputs * T);
         for (Py_ssize_t t = 0; t < used; t++) own->D[own->columns[first + t] * T + t] = 1.0;
@@ -466,7 +466,7 @@ static PyObject *prepare(PyObject *self, PyObject *args) {
         return PyErr_SetString(PyExc_ValueError, "not the states of the program"), NULL;
     }
     own->V = calloc(p->slots + p->constant_count, sizeof(double));
-    own->D = calloc(own->width ? p->slots * MOST_TOGETHER : 1, sizeof(double));
+    own->D = calloc(own->width ? p->slots * DIRECTIONS : 1, sizeof(double));
     if (own->V == NULL || own->D == NULL) {
         Py_DECREF(own);
         return PyErr_NoMemory();
@@ -488,6 +488,7 @@ static int is_cycle(const double *x, const int32_t *r) {
    the larger and the smaller value. `r` has room for n + 1 places. Returns the number of cycles. */
 static Py_ssize_t cycles_of(const double *x, Py_ssize_t n, int32_t *r, int32_t *pairs) {
     Py_ssize_t start = 0, size = 0, count = 0;
+    if (n == 0) return 0;
     for (Py_ssize_t k = 1; k < n; k++) if (x[k] > x[start]) start = k;
     for (Py_ssize_t k = 0; k <= n; k++) {
         const int32_t at = (int32_t)((start + k) % n);
@@ -520,7 +521,7 @@ static PyObject *cycles(PyObject *self, PyObject *args) {
     const Py_ssize_t n = size[2] > 0 ? size[0] / size[2] : 0;
     valid = valid && n * size[2] == size[0] && size[1] == 2 * size[0] && n < INT32_MAX;
     int32_t *room = valid ? malloc(sizeof(int32_t) * (n + 1)) : NULL;
-    for (Py_ssize_t k = 0; room != NULL && n > 0 && k < size[2]; k++)
+    for (Py_ssize_t k = 0; room != NULL && k < size[2]; k++)
         ((int32_t *)view[2].buf)[k] = (int32_t)cycles_of(
             (const double *)view[0].buf + k * n, n, room, (int32_t *)view[1].buf + 2 * n * k);
     free(room);

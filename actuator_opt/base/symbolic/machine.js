@@ -19,7 +19,7 @@ const Machine = (() => {
   const WORDS = 5, FIRST = 1, SECOND = 2, THIRD = 4, RESULT = 8, FROZEN = 16;
 
   /* Flags of the operands by which an operation has derivatives. */
-  function sloped(operation) {
+  function slopedOperands(operation) {
     if (STEPS.has(operation)) return 0;
     return operation === COPYSIGN ? FIRST : operation === WHERE ? SECOND | THIRD : 7;
   }
@@ -298,7 +298,7 @@ const Machine = (() => {
       let found = 0;
       for (let j = 0; j < 3; j++)
         if (active[code[at + 2 + j]] && !(frozen & FROZEN << j)) found |= 1 << j;
-      found &= sloped(operation);
+      found &= slopedOperands(operation);
       if (found) found |= RESULT;
       flags[k] = found;
       active[code[at + 1]] = found & RESULT ? 1 : 0;

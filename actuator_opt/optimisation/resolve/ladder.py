@@ -17,7 +17,7 @@ from dataclasses import field
 import numpy as np
 
 from ...base.dataclass import dataclass
-from .. import kinks, repairs
+from .. import kinks, kkt, repairs
 from ..evaluator import Evaluator, Point
 from ..kkt import polish
 from ..problem import BoxProblem, ParametricProblem, Vector
@@ -165,9 +165,12 @@ class _Ends:
 
         The Lagrangian at the valley's optimum, with the multipliers there, estimates the optimum in
         this valley. It is a lower bound, to second order of the change, where objective and limits
-        are convex (weak duality, [NocedalWright2006] section 12.9).
+        are convex (weak duality, [NocedalWright2006] section 12.9). On a kink, the multipliers of
+        one side give none: then all problems count.
         """
-        if valley.prices is None:
+        evaluator = self.changed.evaluator
+        smooth = kkt.check(evaluator, valley.point).residual <= steps.RESIDUAL
+        if valley.prices is None or not smooth:
             return list(range(len(self.optima)))
         rows = self.changed.margins_at([valley.point])[:, 0]
         multipliers = valley.scale * valley.prices[: valley.rows]

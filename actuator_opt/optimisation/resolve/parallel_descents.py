@@ -98,7 +98,7 @@ class Descents:
 
     @property
     def stuck(self) -> bool:
-        """Whether several runs reached the same point, which is no proven optimum."""
+        """Whether several runs ended at the best objective, without a proven optimum."""
         best = self.best()
         if best is None or self.succeeded:
             return False
@@ -123,7 +123,10 @@ class Descents:
     def descend(
         self, start: Point, algorithm: str, *, linear: bool, max_evaluations: int | None = None
     ) -> bool:
-        """Run one local search and refine its result; return True if it ended at an optimum."""
+        """Run one local search and refine its result; whether it needs no further search.
+
+        It ended at an optimum or, if only the best counts, above a known optimum.
+        """
         evaluations_before = self.evaluator.evaluations
         known_optima = [o for o in self.optima if o.good]
         run = nlopt_wrapper.run(
@@ -187,7 +190,8 @@ class Descents:
     def _beaten(self, point: Point) -> bool:
         """Whether a known optimum is as good as a point, if only the best optimum counts."""
         objectives = [optimum.point.objective for optimum in self.optima if optimum.good]
-        return self.only_best and min(objectives, default=np.inf) <= point.objective
+        met = point.violation <= MET
+        return self.only_best and met and min(objectives, default=np.inf) <= point.objective
 
     def complete(self) -> None:
         """Continue from the best feasible point if it is no optimum yet; an optimum replaces it.
