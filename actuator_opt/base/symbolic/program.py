@@ -126,22 +126,20 @@ class Program:
         rows : number of rows, each the sum over the same number of successive points; None: one for
             every point
         """
-        directions = seeds.shape[2]
         size = (len(own) if rows is None else rows, len(self.outputs))
         shared, own = (np.ascontiguousarray(part, dtype=float) for part in (shared, own))
-        if not directions:
-            results = np.empty((*size, 1))
-            COMPILED.run(
-                self._runnable(None), shared, shared.shape[1], own, np.empty(0), 0, results
-            )
-            return results
-        width = -(-directions // WIDTH) * WIDTH
+        active = np.flatnonzero(seeds.any(axis=(0, 1)))  # other directions change nothing
+        count, width = len(active), -(-len(active) // WIDTH) * WIDTH
         padded = np.zeros((*seeds.shape[:2], width))
-        padded[:, :, :directions] = seeds
-        results = np.empty((*size, 1 + width))
-        runnable = self._runnable(seeds.any(axis=(0, 2)))
-        COMPILED.run(runnable, shared, shared.shape[1], own, padded, width, results)
-        return results[:, :, : 1 + directions]
+        padded[:, :, :count] = seeds if count == seeds.shape[2] else seeds[:, :, active]
+        found = np.empty((*size, 1 + width))
+        runnable = self._runnable(padded.any(axis=(0, 2)) if count else None)
+        COMPILED.run(runnable, shared, shared.shape[1], own, padded, width, found)
+        if count == seeds.shape[2]:
+            return found[:, :, : 1 + count]
+        results = np.zeros((*size, 1 + seeds.shape[2]))
+        results[:, :, 0], results[:, :, 1 + active] = found[:, :, 0], found[:, :, 1 : 1 + count]
+        return results
 
     def repeated(
         self, point: Array, states: int, columns: Sequence[int] | None = None

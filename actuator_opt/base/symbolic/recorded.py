@@ -80,12 +80,6 @@ class RecordedFunction:
 
     def duals(self, shared: Array, own: Array, seeds: Array, rows: int | None = None) -> Array:
         """Results with their slopes (rows, results, 1 + directions), see `Program.duals`."""
-        active = seeds.any(axis=(0, 1))
-        if 0 < active.sum() < len(active):  # the other directions change nothing
-            some = self.duals(shared, own, seeds[:, :, active], rows)
-            results = np.zeros((*some.shape[:2], 1 + len(active)))
-            results[:, :, np.append(True, active)] = some
-            return results
         if not self.reason and self.recording is None and len(own):
             self._record(np.concatenate([shared[0], own[0]]))
         recording = self.recording

@@ -102,15 +102,17 @@ class CycleFatigue:
     def _counted(self, track: SampleResults) -> _Counted:
         samples, _, designs = track.values.shape
         outputs = np.empty((len(self._loads), samples, designs), dtype=np.intp)
+        levels = np.empty(outputs.shape)
         for k, load in enumerate(self._loads):
             if load == "middle":
                 x = track.real("position")
                 behind = x > (x.max(axis=0) + x.min(axis=0)) / 2
                 a, b = (self._outputs.index(f"pulse_{chamber}") for chamber in "ab")
                 outputs[k] = np.where(behind, a, b)
+                levels[k] = np.where(behind, track.values[:, a], track.values[:, b])
             else:
                 outputs[k] = self._outputs.index(f"pulse_{load}")
-        levels = track.values[np.arange(samples)[:, None], outputs, np.arange(designs)]
+                levels[k] = track.real(f"pulse_{load}")
         pairs = rainflow.repeating_cycles(history=levels.transpose(1, 0, 2).reshape(samples, -1))
 
         def by_load(values: Array) -> Array:

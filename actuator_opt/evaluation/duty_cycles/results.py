@@ -279,6 +279,11 @@ class _Cycle:
                 self.keys += [(name, f"{label}|{place}" if label else place) for place in ranked]
             self._sizes.append(len(extremes) * len(ranked))
         self._needs = self._outputs_needed()
+        self._selections: dict[bytes, _Selection] = {}
+        place = model.names.index
+        self._stroke = np.array(
+            [[place(f"area_{x}"), place(f"line_volume_{x}"), place("time_scale")] for x in "ab"]
+        )
 
     def _outputs_needed(self) -> npt.NDArray[np.bool_]:
         """Whether each result needs each output at all samples (keys, outputs)."""
@@ -298,9 +303,24 @@ class _Cycle:
 
     def needed(self, wanted: Array, more: Sequence[str]) -> Array:
         """Whether each output is needed for the wanted results, or among `more` (outputs,)."""
-        needed = np.array([name in more for name in self.model.outputs])
-        needed |= self._needs[wanted].any(axis=0)
+        needed = self._selection(wanted).needed.copy()
+        needed[[self.model.outputs.index(name) for name in more]] = True
         return needed
+
+    def _selection(self, wanted: Array) -> _Selection:
+        """What the wanted results need."""
+        key = wanted.tobytes()
+        if key not in self._selections:
+            sums, exchange, *picked = np.split(wanted, np.cumsum(self._sizes[:-1]))
+            taken = []
+            for (extremes, windows), some in zip(self._blocks, picked, strict=True):
+                kept = some.reshape(len(extremes), -1).any(axis=1)
+                outputs = np.array([output for _, output, _ in extremes])[kept]
+                signs = np.array([sign for _, _, sign in extremes])[kept]
+                taken.append(_Taken(windows, kept, outputs, signs))
+            needed = self._needs[wanted].any(axis=0)
+            self._selections[key] = _Selection(needed, sums, bool(exchange.any()), taken)
+        return self._selections[key]
 
     def samples(self, values: Array, wanted: Array | None = None) -> SampleResults:
         """Results of all samples at values (all numbers, designs); None: all outputs."""
@@ -323,13 +343,11 @@ class _Cycle:
         Results that are not wanted may be 0.
         """
         values, seeds = values[self.order], seeds[self.order]
-        sums, exchange, *picked = np.split(wanted, np.cumsum(self._sizes[:-1]))
-        picks = [
-            self._picks(extremes, windows, track, some)
-            for (extremes, windows), some in zip(self._blocks, picked, strict=True)
-        ]
-        rows = [pick.rows for pick in picks] + [*more]
-        if exchange.any():
+        selection = self._selection(wanted)
+        sums, exchange = selection.sums, selection.exchange
+        picks = [taken.rows(track) for taken in selection.extremes]
+        rows = [*picks, *more]
+        if exchange:
             rows.append(self._turns)
         near = self._near(values, seeds, track, rows)
         shape = (values.shape[1], 1 + seeds.shape[2])
@@ -337,27 +355,14 @@ class _Cycle:
             self._sums(values, seeds, track, sums)
             if sums.any()
             else np.zeros((self._sizes[0], *shape)),
-            self._exchange(values, seeds, near)
-            if exchange.any()
-            else np.zeros((self._sizes[1], *shape)),
+            self._exchange(values, seeds, near) if exchange else np.zeros((self._sizes[1], *shape)),
         ]
-        for pick, size in zip(picks, self._sizes[2:], strict=True):
-            block = np.zeros((pick.kept.size, size // max(pick.kept.size, 1), *shape))
-            if len(pick.rows):
-                block[pick.kept] = near.at(pick.outputs[:, None, None], pick.rows)
+        for taken, pick, size in zip(selection.extremes, picks, self._sizes[2:], strict=True):
+            block = np.zeros((taken.kept.size, size // max(taken.kept.size, 1), *shape))
+            if len(pick):
+                block[taken.kept] = near.at(taken.outputs[:, None, None], pick)
             blocks.append(block.reshape(size, *shape))
         return np.concatenate(blocks), near
-
-    def _picks(
-        self, extremes: Sequence[Extreme], windows: TimeWindows, track: SampleResults, wanted: Array
-    ) -> _Picks:
-        """The samples of the worst values in windows, of the extremes of which any is wanted."""
-        kept = wanted.reshape(len(extremes), -1).any(axis=1)
-        outputs = np.array([output for _, output, _ in extremes])[kept]
-        signs = np.array([sign for _, _, sign in extremes])[kept]
-        if not len(outputs):
-            return _Picks(kept, outputs, np.empty((0, 0, 0), dtype=np.intp))
-        return _Picks(kept, outputs, windows.least(track.values[:, outputs] * signs[:, None]))
 
     def _near(
         self, values: Array, seeds: Array, track: SampleResults, rows: Sequence[Array]
@@ -373,10 +378,9 @@ class _Cycle:
         return NearSamples(found, np.cumsum(marked) - 1)
 
     def _sums(self, values: Array, seeds: Array, track: SampleResults, wanted: Array) -> Array:
-        data = np.empty((values.shape[1], *self._wide.shape))
-        data[:] = self._wide
+        data = np.broadcast_to(self._wide, (values.shape[1], *self._wide.shape))
         if wanted[FLOW_SUMS].any():
-            weights = self._supply.weights(track.real("flow"))
+            data, weights = data.copy(), self._supply.weights(track.real("flow"))
             data[:, :, -2], data[:, :, -1] = weights.ripple.T, weights.peak.T
         return self.model.sums(values, data, seeds, wanted)
 
@@ -395,10 +399,7 @@ class _Cycle:
         shape = (len(EXCHANGE), values.shape[1], len(strokes), len(_STROKE), strokes.shape[2])
         points = np.empty(shape)  # chambers, designs, strokes, inputs, 1 + directions
         points[:, :, :, 0] = np.stack([strokes, -strokes]).transpose(0, 2, 1, 3)
-        for k, name in enumerate(("area", "line_volume")):
-            rows = [self.model.names.index(f"{name}_{chamber}") for chamber in "ab"]
-            points[:, :, :, 1 + k] = numbers[rows][:, :, None]
-        points[:, :, :, 3] = numbers[self.model.names.index("time_scale"), :, None]
+        points[:, :, :, 1:] = numbers[self._stroke].transpose(0, 2, 1, 3)[:, :, None]
         points[:, :, :, 3] *= self.record.time[-1] - self.record.time[0]
         flat = points.reshape(-1, *shape[3:])
         groups = shape[0] * shape[1]
@@ -437,15 +438,32 @@ def _extremes(extremes: Mapping[str, tuple[str, Sense]], outputs: Sequence[str])
     ]
 
 
-class _Picks(NamedTuple):
-    """Samples at which extremes are taken."""
+class _Taken(NamedTuple):
+    """Extremes of which some result is wanted."""
 
+    windows: TimeWindows
     kept: npt.NDArray[np.bool_]
     """Whether each extreme is taken."""
     outputs: npt.NDArray[np.intp]
     """Outputs of the extremes that are taken."""
-    rows: npt.NDArray[np.intp]
-    """(extremes that are taken, windows and ranks, designs)"""
+    signs: npt.NDArray[np.float64]
+    """1 for their least, -1 for their largest value."""
+
+    def rows(self, track: SampleResults) -> npt.NDArray[np.intp]:
+        """Samples of the worst values (extremes that are taken, windows and ranks, designs)."""
+        if not len(self.outputs):
+            return np.empty((0, 0, 0), dtype=np.intp)
+        return self.windows.least(track.values[:, self.outputs] * self.signs[:, None])
+
+
+class _Selection(NamedTuple):
+    """What the wanted results of a cycle need."""
+
+    needed: npt.NDArray[np.bool_]
+    """Whether each output is needed at all samples (outputs,)."""
+    sums: npt.NDArray[np.bool_]
+    exchange: bool
+    extremes: list[_Taken]
 
 
 def _data(record: CycleRecord) -> Array:
@@ -555,11 +573,11 @@ class TimeWindows(NamedTuple):
         outputs = values.transpose(1, 2, 0)[:, :, self.rows]  # (outputs, designs, windows, samples)
         keys = np.where(np.isnan(outputs), -np.inf, outputs)
         keys[..., self.repeated] = np.inf
-        ranks = []
+        ranks, every = [], np.arange(keys.size // keys.shape[-1])
         for _ in range(RANKS):
             ranks.append(np.argmin(keys, axis=-1))
             if keys.shape[-1] > 1:
-                np.put_along_axis(keys, ranks[-1][..., None], np.inf, axis=-1)
+                keys.reshape(-1, keys.shape[-1])[every, ranks[-1].ravel()] = np.inf
         picked = np.stack(ranks, axis=-1)  # (outputs, designs, windows, ranks)
         found: npt.NDArray[np.intp] = self.rows[np.arange(len(self.rows))[:, None], picked]
         return found.reshape(*found.shape[:2], -1).transpose(0, 2, 1)
