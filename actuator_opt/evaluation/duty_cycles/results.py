@@ -314,11 +314,11 @@ class _Cycle:
             sums, exchange, *picked = np.split(wanted, np.cumsum(self._sizes[:-1]))
             taken = []
             for (extremes, windows), some in zip(self._blocks, picked, strict=True):
-                kept = some.reshape(len(extremes), -1).any(axis=1)
+                kept = np.asarray(some.reshape(len(extremes), -1).any(axis=1))
                 outputs = np.array([output for _, output, _ in extremes])[kept]
                 signs = np.array([sign for _, _, sign in extremes])[kept]
                 taken.append(_Taken(windows, kept, outputs, signs))
-            needed = self._needs[wanted].any(axis=0)
+            needed = np.asarray(self._needs[wanted].any(axis=0))
             self._selections[key] = _Selection(needed, sums, bool(exchange.any()), taken)
         return self._selections[key]
 
