@@ -308,7 +308,7 @@ class _Cycle:
         return needed
 
     def _selection(self, wanted: Array) -> _Selection:
-        """What the wanted results need."""
+        """Outputs, sums and extremes that the wanted results need; cached."""
         key = wanted.tobytes()
         if key not in self._selections:
             sums, exchange, *picked = np.split(wanted, np.cumsum(self._sizes[:-1]))
@@ -457,7 +457,7 @@ class _Taken(NamedTuple):
 
 
 class _Selection(NamedTuple):
-    """What the wanted results of a cycle need."""
+    """Outputs, sums and extremes that the wanted results of a cycle need."""
 
     needed: npt.NDArray[np.bool_]
     """Whether each output is needed at all samples (outputs,)."""
