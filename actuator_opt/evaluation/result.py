@@ -546,7 +546,7 @@ class Evaluation(Displayed):
 
     @property
     def limited_life(self) -> float | None:
-        """Pressure cycles that the metal parts last, if that is not endless and nobody asked.
+        """Pressure cycles that the metal parts last, if their life is limited.
 
         The check list asks for some cycles in any case. None if the fatigue strength bears endless
         cycles, if a requirement limits fatigue or life, or if duty cycles state the life.

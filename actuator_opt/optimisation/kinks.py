@@ -107,6 +107,11 @@ class _Kinks:
             inverse = np.linalg.pinv(self.normals)
         object.__setattr__(self, "inward", inverse)
 
+    def sides(self) -> Iterator[Vector]:
+        """The sides (k,) of every piece."""
+        for signs in itertools.product((1.0, -1.0), repeat=len(self.rows)):
+            yield np.array(signs)
+
     def piece(self, parametric: ParametricProblem, signs: Vector) -> ParametricProblem:
         """The smooth problem on one piece; `signs` (k,), 1 or -1, are its sides of the kinks."""
         problem, m = parametric.problem, len(parametric.problem.constraint_names)
@@ -241,13 +246,6 @@ def _kinks_near(evaluator: Evaluator, point: Point, distance: float) -> _Kinks |
     return _Kinks(evaluator, point.z, chosen, np.flatnonzero(used)[rows], step)
 
 
-def _sides(kinks: _Kinks | None) -> Iterator[Vector]:
-    """The sides of all pieces (k,) beside some kinks; none without kinks."""
-    if kinks is not None:
-        for signs in itertools.product((1.0, -1.0), repeat=len(kinks.rows)):
-            yield np.array(signs)
-
-
 def pieces(
     parametric: ParametricProblem, evaluator: Evaluator, point: Point, objective_scale: float = 0.0
 ) -> list[Piece]:
@@ -265,17 +263,18 @@ def pieces(
     result = [Piece(parametric, evaluator, point, whole)]
     if whole.residual <= RESIDUAL or not evaluator.exact or not is_met(point):
         return result
-    proven = []
     kinks = _kinks_near(evaluator, point, BESIDE)
-    for signs in _sides(kinks):
-        assert kinks is not None
+    if kinks is None:
+        return result
+    proven = []
+    for signs in kinks.sides():
         piece = _piece(kinks.piece(parametric, signs), point, objective_scale)
         if not is_met(piece.point) or piece.quality.residual > RESIDUAL:
             return result
         if kinks.differs(piece, signs):
             return result
         proven.append(piece)
-    return proven or result
+    return proven
 
 
 def _piece(parametric: ParametricProblem, point: Point, objective_scale: float) -> Piece:
@@ -329,8 +328,9 @@ def _ends(evaluator: Evaluator, point: Point, distance: float) -> Iterator[Point
     """The feasible points at which Newton steps end on each piece beside the kinks near a point."""
     parametric = ParametricProblem.of(evaluator.problem)
     kinks = _kinks_near(evaluator, point, distance)
-    for signs in _sides(kinks):
-        assert kinks is not None
+    if kinks is None:
+        return
+    for signs in kinks.sides():
         beside = Evaluator(kinks.piece(parametric, signs).problem)
         beside.eager = True
         curved = Evaluator(kinks.rough(signs))

@@ -255,14 +255,6 @@ def _priced(
     return active, inequality, equality_multipliers, float(np.linalg.norm(gradient)) / size
 
 
-def lagrangian_slope(evaluator: Evaluator, point: Point) -> Vector:
-    """Gradient (nf,) of the Lagrangian at a point, with the multipliers of `check`."""
-    jacobian, m = evaluator.jacobian(point), evaluator.constraint_count
-    active, inequality, equality_multipliers, _ = _priced(evaluator, point, 0.0)
-    slope = jacobian[0] - active.gradients.T @ inequality
-    return np.asarray(slope - jacobian[1 + m :].T @ equality_multipliers)
-
-
 def residual(evaluator: Evaluator, point: Point) -> float:
     """Relative norm of the Lagrangian's gradient at a point, computed as in `check`."""
     return _priced(evaluator, point, 0.0, independent=False)[-1]

@@ -162,7 +162,7 @@ def test_advice_says_how_to_enforce_it_and_how_to_accept_the_miss():
     ids=["knee", "factor asked for", "life asked for", "low pressure", "duty cycles"],
 )
 def test_a_limited_life_stands_beside_the_verdict(name, changes, cycles):
-    """Fatigue below endless strength is told, unless file or duty cycles ask for a life.
+    """A limited life is shown, unless a requirement or duty cycles ask for a life.
 
     At 60 bar the stresses are 60/210 of those for which the factor is 0.44, so it exceeds 1.
     """
