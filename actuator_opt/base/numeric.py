@@ -86,6 +86,8 @@ def positive(value: Array) -> Array:
 def sqrt(value: Array) -> Array:
     """Square root; NaN for a negative real part, also under a complex step."""
     xp = namespace(value)
+    if hasattr(xp, "real_sqrt"):  # of recorded symbols, which are real
+        return xp.real_sqrt(value)
     negative = real(value) < 0
     root = xp.sqrt(where(negative, 0 * value + 1, value))
     return where(negative, 0 * root + np.nan, root)

@@ -578,7 +578,7 @@ def cycle_models(subject: PreparedDesign, plan: SamplePlan, numbers: Numbers) ->
     return subject.cycles[key]
 
 
-MANY_SAMPLES = 5000
+MANY_SAMPLES = 500
 """Samples of all duty cycles, above which studies of many designs use fewer of them (our choice).
 With 100 cycles of 1000 samples, 2048 designs alone would take minutes."""
 FEW_SAMPLES = 200

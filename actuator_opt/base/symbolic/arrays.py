@@ -549,6 +549,7 @@ NAMESPACE: Any = SimpleNamespace(
 )
 NAMESPACE.asarray = asarray
 NAMESPACE.array = asarray
+NAMESPACE.real_sqrt = np.sqrt
 NAMESPACE.root_parts = _root_parts
 NAMESPACE.finished = _finished
 

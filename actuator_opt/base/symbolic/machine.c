@@ -80,7 +80,20 @@ typedef struct {
     const double *shared, *own, *seeds;
     Py_ssize_t count, first;            /* points; inputs that are shared */
     Py_ssize_t sharing, seeded, summed; /* successive points of shared inputs, seeds, results */
+    Py_ssize_t once;                    /* instructions that need shared inputs only */
 } Points;
+
+/* Number of the points from `at` that are computed together, at most L: all share their inputs. */
+static Py_ssize_t together_from(const Points *x, Py_ssize_t at, Py_ssize_t L) {
+    Py_ssize_t most = x->count - at < L ? x->count - at : L;
+    const Py_ssize_t left = x->sharing - at % x->sharing, seeded = x->seeded - at % x->seeded;
+    if (x->sharing > 1 && left < most) most = left;
+    if (x->seeded > 1 && seeded < most) most = seeded;
+    return most;
+}
+
+/* Whether the points from `at` share none of their inputs with the points before. */
+static int begins(const Points *x, Py_ssize_t at) { return at % x->sharing == 0; }
 
 /* Write the inputs of the points from `at`, in L lanes; lanes beyond the last point repeat one. */
 static void inputs_to(const Program *p, const Points *x, Py_ssize_t at, Py_ssize_t wide,
@@ -89,7 +102,7 @@ static void inputs_to(const Program *p, const Points *x, Py_ssize_t at, Py_ssize
     for (Py_ssize_t l = 0; l < L; l++) {
         const Py_ssize_t from = at + (l < wide ? l : 0);
         const double *shared = x->shared + from / x->sharing * x->first;
-        for (Py_ssize_t k = 0; k < x->first; k++) V[k * L + l] = shared[k];
+        for (Py_ssize_t k = 0; k < x->first && begins(x, at); k++) V[k * L + l] = shared[k];
         const double *own = x->own + from * rest;
         for (Py_ssize_t k = 0; k < rest; k++) V[(x->first + k) * L + l] = own[k];
     }
@@ -101,15 +114,16 @@ static int run_values(const Program *p, const Points *x, double *results) {
     double *V = calloc(L * (p->slots + p->constant_count), sizeof(double));
     if (V == NULL) return -1;
     constants_to(p, V, (int)L);
-    for (Py_ssize_t at = 0; at < x->count; at += L) {
-        const Py_ssize_t wide = x->count - at < L ? x->count - at : L;
+    for (Py_ssize_t at = 0, wide; at < x->count; at += wide) {
+        const Py_ssize_t first = begins(x, at) ? 0 : x->once;
+        wide = together_from(x, at, L);
         inputs_to(p, x, at, wide, V, L);
-        (L == 1 ? run_single : run_lanes)(p->code, p->count, p->extra, V);
+        (L == 1 ? run_single : run_lanes)(p->code + WORDS * first, p->count - first, p->extra, V);
         for (Py_ssize_t l = 0; l < wide; l++) {
             double *row = results + (at + l) / x->summed * p->results;
-            const int begins = (at + l) % x->summed == 0;
+            const int starts = (at + l) % x->summed == 0;
             for (Py_ssize_t k = 0; k < p->results; k++)
-                row[k] = V[(Py_ssize_t)p->outputs[k] * L + l] + (begins ? -0.0 : row[k]);
+                row[k] = V[(Py_ssize_t)p->outputs[k] * L + l] + (starts ? -0.0 : row[k]);
         }
     }
     free(V);
@@ -154,9 +168,8 @@ static void run_some_slopes(const Program *p, const Points *x, Py_ssize_t T, Py_
                             double *results) {
     const Dual computed = dual_of(wide, L);
     for (Py_ssize_t at = 0, lanes; at < x->count; at += lanes) {
-        const Py_ssize_t left = x->seeded - at % x->seeded; /* points with the same seeds */
-        lanes = x->count - at < L ? x->count - at : L;
-        if (x->seeded > 1 && left < lanes) lanes = left;
+        const Py_ssize_t skipped = begins(x, at) ? 0 : x->once;
+        lanes = together_from(x, at, L);
         inputs_to(p, x, at, lanes, V, L);
         for (Py_ssize_t l = 0; l < L && at % x->seeded == 0; l++) {
             const double *seed = x->seeds + (at + (l < lanes ? l : 0)) / x->seeded * p->inputs * T;
@@ -164,15 +177,15 @@ static void run_some_slopes(const Program *p, const Points *x, Py_ssize_t T, Py_
                 for (int t = 0; t < wide; t++)
                     D[(k * wide + t) * L + l] = seed[k * T + first + t];
         }
-        computed(p->code, p->count, p->extra, V, D, wide);
+        computed(p->code + WORDS * skipped, p->count - skipped, p->extra, V, D, wide);
         for (Py_ssize_t k = 0; k < p->results; k++) {
             const Py_ssize_t slot = p->outputs[k];
             for (Py_ssize_t l = 0; l < lanes; l++) {
                 double *row = results + ((at + l) / x->summed * p->results + k) * (1 + T);
                 double *slopes = row + 1 + first;
-                const int begins = (at + l) % x->summed == 0;
-                if (first == 0) row[0] = V[slot * L + l] + (begins ? -0.0 : row[0]);
-                if (begins) memset(slopes, 0, sizeof(double) * wide);
+                const int starts = (at + l) % x->summed == 0;
+                if (first == 0) row[0] = V[slot * L + l] + (starts ? -0.0 : row[0]);
+                if (starts) memset(slopes, 0, sizeof(double) * wide);
                 if (!varies[k]) continue;
                 for (int t = 0; t < wide; t++) slopes[t] += D[(slot * wide + t) * L + l];
             }
@@ -210,6 +223,7 @@ static int sized(Py_buffer *view, Py_ssize_t item, Py_ssize_t *count) {
 typedef struct {
     PyObject_HEAD
     Program p;
+    Py_ssize_t once, shared; /* first instructions, which need the first inputs only */
     int32_t *varies; /* whether each output has derivatives */
     char *block;     /* memory of all arrays */
 } Checked;
@@ -246,16 +260,18 @@ static int copied(Checked *own, const Py_buffer *view) {
 }
 
 PyDoc_STRVAR(checked_doc,
-    "checked(code, extra, outputs, varies, constants, slots, inputs)\n\n"
-    "A copy of a program that can be run; refused if it would use memory outside its slots.");
+    "checked(code, extra, outputs, varies, constants, slots, inputs, once, shared)\n\n"
+    "A copy of a program that can be run; refused if it would use memory outside its slots. The first\n"
+    "instructions (`once`) need only the first inputs (`shared`), and no later one changes their results.");
 
 static PyObject *checked(PyObject *self, PyObject *args) {
     static const Py_ssize_t item[5] = {2, 4, 4, 4, 8};
     Py_buffer view[5];
     Py_ssize_t size[5], slots, inputs;
     (void)self;
-    if (!PyArg_ParseTuple(args, "y*y*y*y*y*nn", &view[0], &view[1], &view[2], &view[3], &view[4],
-                          &slots, &inputs))
+    Py_ssize_t once, shared;
+    if (!PyArg_ParseTuple(args, "y*y*y*y*y*nnnn", &view[0], &view[1], &view[2], &view[3], &view[4],
+                          &slots, &inputs, &once, &shared))
         return NULL;
     Checked *own = (Checked *)PyType_GenericAlloc(checked_type, 0);
     int valid = 1, memory = own != NULL;
@@ -264,9 +280,10 @@ static PyObject *checked(PyObject *self, PyObject *args) {
         Program *p = &own->p;
         p->slots = slots, p->inputs = inputs, p->count = size[0] / WORDS;
         p->extras = size[1], p->results = size[2], p->constant_count = size[4];
+        own->once = once, own->shared = shared;
         memory = copied(own, view);
         valid = memory && size[0] % WORDS == 0 && size[3] == size[2] && slots >= 0
-             && slots <= 65536 && inputs > 0 && !refused(p);
+             && slots <= 65536 && inputs > 0 && once >= 0 && once <= p->count && !refused(p);
         for (Py_ssize_t k = 0; valid && k < p->results; k++)
             valid = !own->varies[k] || p->outputs[k] < slots;
     }
@@ -314,6 +331,7 @@ static PyObject *run(PyObject *self, PyObject *args) {
         x.seeded = successive(x.count, size[2], p->inputs * width);
         x.summed = successive(x.count, size[3], p->results * (1 + width));
         valid = size[1] == x.count * rest && x.sharing && x.seeded && x.summed;
+        x.once = x.first < program->shared ? 0 : program->once;
     }
     if (valid) {
         Py_BEGIN_ALLOW_THREADS

@@ -63,6 +63,9 @@ class Program:
     constants : values of the constants, whose slots follow all others
     slots : number of slots for inputs and for results of instructions
     inputs : number of inputs; they are in the first slots
+    once : number of the first instructions, which need only the first inputs; points that share
+        these inputs run them once
+    shared : number of these inputs
     """
 
     code: Array
@@ -72,6 +75,8 @@ class Program:
     constants: Array
     slots: int
     inputs: int
+    once: int = 0
+    shared: int = 0
     _checked: dict[bytes, Any] = field(default_factory=dict)
     """Programs for the virtual machine, by the inputs that change (see `along`)."""
 
@@ -214,17 +219,23 @@ class Program:
         if key not in self._checked:
             code, varies = (self.code, self.frozen) if moving is None else self.along(moving)
             self._checked[key] = COMPILED.checked(
-                code, self.extra, self.outputs, varies, self.constants, self.slots, self.inputs
-            )
+                code, self.extra, self.outputs, varies, self.constants,
+                self.slots, self.inputs, self.once, self.shared,
+            )  # fmt: skip
         return self._checked[key]
 
 
-def program(inputs: Sequence[Symbol], outputs: Sequence[Any]) -> Program:
+def program(inputs: Sequence[Symbol], outputs: Sequence[Any], shared: int = 0) -> Program:
     """Write the program that computes outputs (symbols or numbers) from inputs.
 
     A slot is used again once its value is no longer needed, so that all slots stay in fast memory.
+
+    Parameters
+    ----------
+    shared : number of the first inputs that many points share; instructions that need no others
+        come first
     """
-    return _Writer(inputs, outputs).program()
+    return _Writer(inputs, outputs, shared).program()
 
 
 def _owner(node: Symbol) -> Symbol:
@@ -237,16 +248,28 @@ def _owner(node: Symbol) -> Symbol:
 class _Writer:
     """Assigns slots to the operations that outputs depend on, and writes the instructions."""
 
-    def __init__(self, inputs: Sequence[Symbol], outputs: Sequence[Any]) -> None:
-        self.inputs, self.outputs = inputs, outputs
+    def __init__(self, inputs: Sequence[Symbol], outputs: Sequence[Any], shared: int) -> None:
+        self.inputs, self.outputs, self.shared = inputs, outputs, shared
         self.slot: dict[int, int] = {node.index: k for k, node in enumerate(inputs)}
         given = set(self.slot)
-        self.nodes = [n for n in needed(outputs) if n.index not in given and n.op not in SHARED]
+        nodes = [n for n in needed(outputs) if n.index not in given and n.op not in SHARED]
+        self.first = self._of_shared(nodes) if shared else set()
+        """Results that need only shared inputs."""
+        self.nodes = sorted(nodes, key=lambda node: node.index not in self.first)
         self.constants: dict[float | str, int] = {}
         self.values: list[float] = []
         self.extra: list[int] = []
         self.code: list[tuple[int, ...]] = []
         self.count = len(inputs)
+
+    def _of_shared(self, nodes: Sequence[Symbol]) -> set[int]:
+        """Nodes that need only shared inputs."""
+        found = {node.index for node in self.inputs[: self.shared]}
+        for node in nodes:
+            operands = (_owner(a).index for a in node.args if type(a) is Symbol)
+            if all(index in found for index in operands):
+                found.add(node.index)
+        return found
 
     def program(self) -> Program:
         """Write all instructions."""
@@ -260,7 +283,15 @@ class _Writer:
         }
         kept = {_owner(out).index for out in self.outputs if isinstance(out, Symbol)}
         kept |= {node.index for node in self.inputs}
+        kept |= {  # of instructions that run once, what the others need
+            index
+            for node in self.nodes
+            if node.index not in self.first
+            for a in node.args
+            if type(a) is Symbol and (index := _owner(a).index) in self.first
+        }
         free: list[int] = []
+        once = 0
         for k, node in enumerate(self.nodes):
             flags = _MISSING[len(node.args)] if len(node.args) < 3 else 0
             places: list[int] = []
@@ -294,7 +325,9 @@ class _Writer:
             self.code.append((codes[node.op] | flags << 8, at, *words))
             if steep and is_steep_at_zero(node):
                 self.code.append((codes["where"], at, at, at, self._place(0.0)))
-        return self._finished()
+            if node.index in self.first:
+                once = len(self.code)
+        return self._finished(once)
 
     def _place(self, value: Any) -> int:
         """Slot of an operand; constants have -1, -2, ... until the number of slots is known."""
@@ -313,7 +346,7 @@ class _Writer:
             self.values.append(number)
         return self.constants[key]
 
-    def _finished(self) -> Program:
+    def _finished(self, once: int) -> Program:
         outputs = [self._place(out) for out in self.outputs]
         frozen = [isinstance(out, Symbol) and out.op == "real" for out in self.outputs]
 
@@ -328,4 +361,5 @@ class _Writer:
         return Program(
             code.astype(np.uint16), settled(self.extra), settled(outputs),
             np.array(frozen, dtype=np.int32), np.array(self.values), self.count, len(self.inputs),
+            once, self.shared,
         )  # fmt: skip

@@ -39,6 +39,8 @@ class RecordedFunction:
     present : present value of every input (inputs,)
     structure : JSON data that determine the operations of the function, so that its recordings can
         be stored for later runs; None: they are not stored
+    shared : number of the first inputs that many points share; what needs no others runs once for
+        these points
 
     Attributes
     ----------
@@ -52,8 +54,9 @@ class RecordedFunction:
         names: Sequence[str],
         present: Array,
         structure: Any = None,
+        shared: int = 0,
     ) -> None:
-        self.function = function
+        self.function, self.shared = function, shared
         self.names = tuple(names)
         self.present = present
         self.structure = structure
@@ -233,7 +236,7 @@ class RecordedFunction:
         with np.errstate(all="ignore"):
             symbols = recorder.variables(self.names, point)
             results = elements(self.function(symbols))
-        written = programs.program(elements(symbols), [*results, *recorder.guards])
+        written = programs.program(elements(symbols), [*results, *recorder.guards], self.shared)
         return Recording(written, np.array(list(recorder.guards.values()), dtype=bool))
 
 

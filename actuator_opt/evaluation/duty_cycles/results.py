@@ -37,9 +37,11 @@ from .samples import (
     SEAL_SUMS,
     SUMS,
     NearSamples,
+    Part,
     SampleModel,
     SampleResults,
     leakage_at_rest,
+    parts_of,
 )
 
 WINDOWS = 8
@@ -189,7 +191,7 @@ class CycleModels:
             if numbers.shape[1] < count:
                 return self.duals(numbers, wanted)[:, place]
         longest = max(len(record.time) for record in self.records.values())
-        most = max(1, MOST_SAMPLES // (longest * (4 if size > 1 else 1)))
+        most = max(1, MOST_SAMPLES // longest)
         blocks = []
         with np.errstate(all="ignore"):
             for at in range(0, count, most):
@@ -261,6 +263,8 @@ class _Cycle:
         self._supply = SupplyWeights(record.time, phases)
         self._data = _data(record)
         self._wide = np.concatenate([self._data, _neighbours(record)], axis=1)
+        self._range = record.motion.min(), record.motion.max()
+        self._parts: dict[int, tuple[list[Part], list[Part]]] = {}
         self._turns = turning_points(record.motion)
         self.windows, self.whole = windows_of(record, count), windows_of(record, 1)
         labels = [ring.label for ring in plan.rings]
@@ -327,7 +331,8 @@ class _Cycle:
         numbers = values[self.order]
         if wanted is None:
             wanted = np.ones(len(self.model.outputs), dtype=bool)
-        found = self.model.results(numbers, self._data, np.zeros((*numbers.shape, 0)), wanted)
+        parts = self._parted(numbers)[0]
+        found = self.model.results(numbers, parts, np.zeros((*numbers.shape, 0)), wanted)
         return SampleResults(found[..., 0], self.model.outputs, wanted)
 
     def results(
@@ -374,15 +379,29 @@ class _Cycle:
         marked = np.zeros(count, dtype=bool)
         for part in rows:
             marked[part] = True
-        found = self.model.results(values, self._data[marked], seeds, track.known)
+        part = parts_of(self._data[marked], side=0)  # so few that a second program takes longer
+        found = self.model.results(values, part, seeds, track.known)
         return NearSamples(found, np.cumsum(marked) - 1)
 
     def _sums(self, values: Array, seeds: Array, track: SampleResults, wanted: Array) -> Array:
-        data = np.broadcast_to(self._wide, (values.shape[1], *self._wide.shape))
+        weights = None
         if wanted[FLOW_SUMS].any():
-            data, weights = data.copy(), self._supply.weights(track.real("flow"))
-            data[:, :, -2], data[:, :, -1] = weights.ripple.T, weights.peak.T
-        return self.model.sums(values, data, seeds, wanted)
+            weights = self._supply.weights(track.real("flow"))
+        parts = []
+        for extending, rows, data in self._parted(values)[1]:
+            every = np.broadcast_to(data, (values.shape[1], *data.shape))
+            if weights is not None:
+                every = every.copy()
+                every[:, :, -2], every[:, :, -1] = weights.ripple[rows].T, weights.peak[rows].T
+            parts.append(Part(extending, rows, every))
+        return self.model.sums(values, parts, seeds, wanted)
+
+    def _parted(self, values: Array) -> tuple[list[Part], list[Part]]:
+        """The samples by direction at numbers of this cycle: columns, and those of sums."""
+        side = self.model.side(values, self._range)
+        if side not in self._parts:
+            self._parts[side] = parts_of(self._data, side), parts_of(self._wide, side)
+        return self._parts[side]
 
     def _exchange(self, values: Array, seeds: Array, near: NearSamples) -> Array:
         """Flow of fresh oil into each chamber: of every stroke, what the line does not hold back.

@@ -45,7 +45,12 @@ SEAL_SUMS = ("severity", "seal_friction_energy")
 
 
 def sample(
-    plan: SamplePlan, u: Mapping[str, Array], s: Mapping[str, Array], *, linked: bool
+    plan: SamplePlan,
+    u: Mapping[str, Array],
+    s: Mapping[str, Array],
+    *,
+    linked: bool,
+    extending: bool | None = None,
 ) -> dict[str, Array]:
     """Forces, pressures and flows at a sample; all arguments broadcast.
 
@@ -55,13 +60,15 @@ def sample(
     u : numbers of the design and of the cycle, see `numbers.collect`
     s : the columns of data of the sample, see `COLUMNS`
     linked : whether the linkage gives position and lever arm
+    extending : direction of the rod; None: by the speed, of which zero counts as extending
 
     Returns
     -------
     results by name, SI
     """
     position, arm = _kinematics(u, s["motion"], linked=linked)
-    move = _Move(plan, u, u["load_scale"] * s["load"] / arm, arm * s["rate"] / u["time_scale"])
+    force, speed = u["load_scale"] * s["load"] / arm, arm * s["rate"] / u["time_scale"]
+    move = _Move(plan, u, force, speed, extending)
     supply = s["supply"] if "supply" in s else u["level"]
     balance = _balanced(plan, u, move, supply)
     friction = sum(balance.frictions, u["other_friction"])
@@ -109,7 +116,12 @@ def sample(
 
 
 def summands(
-    plan: SamplePlan, u: Mapping[str, Array], s: Mapping[str, Array], *, linked: bool
+    plan: SamplePlan,
+    u: Mapping[str, Array],
+    s: Mapping[str, Array],
+    *,
+    linked: bool,
+    extending: bool | None = None,
 ) -> list[Array]:
     """Summands of a sample in every one of `SUMS`, and in `SEAL_SUMS` of each seal, SI.
 
@@ -117,7 +129,7 @@ def summands(
     the trapezoid rule in time: a sample has half of the interval before and half of that after it.
     Arguments are those of `sample`; `s` also has the columns `NEIGHBOURS`.
     """
-    here = sample(plan, u, s, linked=linked)
+    here = sample(plan, u, s, linked=linked, extending=extending)
     x, supply = here["position"], here["supply"]
     ends = []
     for word in ("before", "after"):
@@ -190,10 +202,15 @@ class _Move:
     """A motion with its load: direction, chambers, edges, and force against the motion."""
 
     def __init__(
-        self, plan: SamplePlan, u: Mapping[str, Array], force: Array, speed: Array
+        self,
+        plan: SamplePlan,
+        u: Mapping[str, Array],
+        force: Array,
+        speed: Array,
+        extending: bool | None,
     ) -> None:
         self.force, self.speed = force, speed
-        self.extending = real(speed) >= 0
+        self.extending: Array = real(speed) >= 0 if extending is None else extending
         self.fast = where(self.extending, speed, -speed)
         areas = u["area_a"], u["area_b"]
         self.chambers = {
@@ -208,13 +225,19 @@ class _Move:
         self.ratio = quasi_static.edge_ratio(
             **self.chambers, feed_coefficient=self.feed, drain_coefficient=drain
         )
-        self.line_a, self.line_b = _line_drops(plan, u, self.fast)
-        self.against = (
-            where(self.extending, force, -force)
-            + u["area_a"] * self.line_a
-            + u["area_b"] * self.line_b
-        )
+        self.drops = _line_drops(plan, u, self.fast)
+        self.against = where(self.extending, force, -force)
         """Force of load and lines against the motion, without friction [N]."""
+        for chamber, drop in self.drops.items():
+            self.against = self.against + u[f"area_{chamber}"] * drop
+
+    def pressures(self, driven: Array, other: Array) -> tuple[Array, Array]:
+        """Pressures of chambers A and B from those at the valve."""
+        a, b = where(self.extending, driven, other), where(self.extending, other, driven)
+        into = where(self.extending, 1.0, -1.0)
+        if "a" in self.drops:
+            a = a - into * self.drops["a"]
+        return a, b + into * self.drops["b"] if "b" in self.drops else b
 
 
 class _Balance(NamedTuple):
@@ -228,21 +251,18 @@ class _Balance(NamedTuple):
 
 def _balanced(plan: SamplePlan, u: Mapping[str, Array], move: _Move, supply: Array) -> _Balance:
     """Pressures and friction, which depend on each other."""
-    lines = where(move.extending, move.line_a, move.line_b)
-    others = where(move.extending, move.line_b, move.line_a)
-    friction: Array = 0.0 * move.force
+    load = move.against
     for _ in range(1 + PASSES):
         state = quasi_static.driven_pressures(
-            load=move.against + friction,
+            load=load,
             supply_pressure=supply,
             return_pressure=u["drain"],
             ratio=move.ratio,
             **move.chambers,
         )
-        into, out = state.driven - lines, state.other + others
-        a, b = where(move.extending, into, out), where(move.extending, out, into)
+        a, b = move.pressures(state.driven, state.other)
         frictions = [_friction(plan, u, i, a, b, move.fast) for i in range(len(plan.rings))]
-        friction = sum(frictions, u["other_friction"])
+        load = move.against + sum(frictions, u["other_friction"])
     return _Balance(a, b, state.edge_drop, frictions)
 
 
@@ -270,15 +290,15 @@ def _kinematics(u: Mapping[str, Array], motion: Array, *, linked: bool) -> tuple
     return u["arm"] * motion + u["shift"], u["arm"]
 
 
-def _line_drops(plan: SamplePlan, u: Mapping[str, Array], speed: Array) -> tuple[Array, Array]:
-    """Pressure drops of the lines of chambers A and B at a speed without sign."""
-    drops: dict[str, Array] = {"a": 0.0 * speed, "b": 0.0 * speed}
+def _line_drops(plan: SamplePlan, u: Mapping[str, Array], speed: Array) -> dict[str, Array]:
+    """Pressure drops of the lines of chambers A and B, if any, at a speed without sign."""
+    drops: dict[str, Array] = {}
     for chamber, i in plan.lines:
         flow = u[f"area_{chamber}"] * speed
         oil = {"flow": flow, "density": u["density"]}
         inner = u[f"line{i}.inner_diameter"]
         drops[chamber] = (
-            drops[chamber]
+            drops.get(chamber, 0.0)
             + lines.line_pressure_drop(
                 inner_diameter=inner,
                 length=u[f"line{i}.length"],
@@ -289,7 +309,7 @@ def _line_drops(plan: SamplePlan, u: Mapping[str, Array], speed: Array) -> tuple
                 inner_diameter=inner, loss_coefficient=u[f"line{i}.loss_coefficient"], **oil
             )
         )
-    return drops["a"], drops["b"]
+    return drops
 
 
 def _sealed(plan: SamplePlan, i: int, a: Array, b: Array) -> Array:
@@ -423,6 +443,38 @@ class NearSamples(NamedTuple):
         return picked
 
 
+def _results(*arguments: Any, **stated: Any) -> list[Array]:
+    """All results of `sample`, in order."""
+    return [*sample(*arguments, **stated).values()]
+
+
+class Part(NamedTuple):
+    """Samples of a cycle in which the rod moves in the same direction."""
+
+    extending: bool | None
+    """None: the direction differs between designs, or changes at a dead point."""
+    rows: npt.NDArray[np.intp]
+    """Places of the samples in the cycle."""
+    data: Array
+    """Columns (samples, columns), or for each design (designs, samples, columns)."""
+
+
+def parts_of(data: Array, side: int) -> list[Part]:
+    """The samples (samples, columns), parted by the direction of the rod.
+
+    A program for one direction is a third shorter than one that selects by direction.
+
+    Parameters
+    ----------
+    side : sign of the lever arm at all samples and designs; 0: it differs
+    """
+    if not side:
+        return [Part(None, np.arange(len(data)), data)]
+    forward = side * data[:, COLUMNS.index("rate")] >= 0
+    parts = ((extending, np.flatnonzero(forward == extending)) for extending in (True, False))
+    return [Part(extending, rows, data[rows]) for extending, rows in parts if len(rows)]
+
+
 class SampleModel:
     """The model of the samples of a design, as a function of numbers and columns of data.
 
@@ -446,7 +498,7 @@ class SampleModel:
         one = dict.fromkeys((*names, *columns), np.ones(1))
         with np.errstate(all="ignore"):
             self.outputs = tuple(sample(plan, one, one, linked=linked))
-        self._functions: dict[tuple[str, bytes], RecordedFunction] = {}
+        self._functions: dict[Any, RecordedFunction] = {}
 
     def _recorded(
         self,
@@ -463,62 +515,73 @@ class SampleModel:
             xp: Any = np if type(first) is np.ndarray else first.__array_namespace__()
             return xp.stack([xp.broadcast_to(xp.asarray(row), first.shape) for row in results])
 
-        return RecordedFunction(rows, labels, np.ones(len(labels)))
+        return RecordedFunction(rows, labels, np.ones(len(labels)), shared=count)
 
-    def results(self, numbers: Array, data: Array, seeds: Array, wanted: Array) -> Array:
+    def side(self, numbers: Array, motion: Sequence[float]) -> int:
+        """Sign of the lever arm in a range of the motion, 0 if it changes or differs.
+
+        Parameters
+        ----------
+        numbers : (numbers, designs)
+        motion : least and largest motion
+        """
+        if not self.linked:
+            sides = np.sign(numbers[self.names.index("arm")])
+        else:  # that of the sine of the angle
+            turned = np.asarray(motion)[:, None] + numbers[self.names.index("angle_offset")]
+            first, last = np.floor(turned / np.pi)
+            sides = np.where(first == last, 1.0 - 2.0 * (first % 2), 0.0)
+        return int(sides[0]) if sides[0] and (sides == sides[0]).all() else 0
+
+    def results(self, numbers: Array, parts: Sequence[Part], seeds: Array, wanted: Array) -> Array:
         """Results with slopes (samples, outputs, designs, 1 + directions).
 
         Parameters
         ----------
         numbers : (numbers, designs)
-        data : columns of the samples (samples, columns)
+        parts : the samples
         seeds : changes of the numbers in every direction (numbers, designs, directions)
         wanted : whether each output is wanted (outputs,); others are 0
         """
-
-        def function(u: Mapping[str, Array], s: Mapping[str, Array]) -> list[Array]:
-            return [*sample(self.plan, u, s, linked=self.linked).values()]
-
-        designs = numbers.shape[1]
-        some = self._some("results", self.columns, function, wanted)
-        own = np.broadcast_to(data, (designs, *data.shape)).reshape(-1, data.shape[1])
-        found = some.duals(numbers.T, own, self._padded(seeds, data.shape[1]))
-        results = np.zeros((len(data), len(wanted), designs, 1 + seeds.shape[2]))
-        found = found.reshape(designs, len(data), -1, 1 + seeds.shape[2])
-        results[:, wanted] = found.transpose(1, 2, 0, 3)
+        designs, count = numbers.shape[1], sum(len(part.rows) for part in parts)
+        results = np.zeros((count, len(wanted), designs, 1 + seeds.shape[2]))
+        for extending, rows, data in parts:
+            some = self._some(_results, self.columns, wanted, extending)
+            own = np.broadcast_to(data, (designs, *data.shape)).reshape(-1, data.shape[1])
+            found = some.duals(numbers.T, own, self._padded(seeds, data.shape[1]))
+            found = found.reshape(designs, len(data), -1, 1 + seeds.shape[2])
+            results[np.ix_(rows, wanted)] = found.transpose(1, 2, 0, 3)
         return results
 
-    def sums(self, numbers: Array, data: Array, seeds: Array, wanted: Array) -> Array:
+    def sums(self, numbers: Array, parts: Sequence[Part], seeds: Array, wanted: Array) -> Array:
         """Sums over a cycle with slopes (sums, designs, 1 + directions), in order of `summands`.
 
-        Sums that are not `wanted` (sums,) are 0. `data` has a row of columns and `NEIGHBOURS` for
-        every sample of every design (designs, samples, columns).
+        Sums that are not `wanted` (sums,) are 0. The parts have the columns and `NEIGHBOURS`, for
+        every design.
         """
-
-        def function(u: Mapping[str, Array], s: Mapping[str, Array]) -> list[Array]:
-            return summands(self.plan, u, s, linked=self.linked)
-
-        designs, _, width = data.shape
-        some = self._some("summands", (*self.columns, *NEIGHBOURS), function, wanted)
-        found = some.duals(numbers.T, data.reshape(-1, width), self._padded(seeds, width), designs)
+        designs = numbers.shape[1]
         sums = np.zeros((len(wanted), designs, 1 + seeds.shape[2]))
-        sums[wanted] = found.transpose(1, 0, 2)
+        for extending, _, data in parts:
+            some = self._some(summands, (*self.columns, *NEIGHBOURS), wanted, extending)
+            own = data.reshape(-1, data.shape[2])
+            found = some.duals(numbers.T, own, self._padded(seeds, data.shape[2]), designs)
+            sums[wanted] += found.transpose(1, 0, 2)
         return sums
 
     def _some(
         self,
-        name: str,
+        function: Callable[..., list[Array]],
         columns: Sequence[str],
-        function: Callable[[Mapping[str, Array], Mapping[str, Array]], list[Array]],
         wanted: Array,
+        extending: bool | None,
     ) -> RecordedFunction:
-        """The wanted results of a function as a recorded function."""
-        key = (name, wanted.tobytes())
+        """The wanted results of a function of samples, as a recorded function."""
+        key = (function, wanted.tobytes(), extending)
         if key not in self._functions:
             rows = np.flatnonzero(wanted).tolist()
 
             def some(u: Mapping[str, Array], s: Mapping[str, Array]) -> list[Array]:
-                every = function(u, s)
+                every = function(self.plan, u, s, linked=self.linked, extending=extending)
                 return [every[row] for row in rows]
 
             self._functions[key] = self._recorded(columns, some)
