@@ -12,6 +12,7 @@ import json
 import math
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -309,7 +310,7 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
         ("", f"check missed: {c.name}: {_against(c)}") for c in checks if c.status == "missed"
     ]
     if duty is not None:
-        duty = replace(duty, shortfalls=tuple(_shortfalls(subject, duty, checks)))
+        duty = replace(duty, find_shortfalls=partial(_shortfalls, subject, duty, checks))
     return Evaluation(
         name=design.name,
         version=VERSION,

@@ -74,54 +74,71 @@ static int refused(const Program *p) {
     return p->inputs > p->slots;
 }
 
-/* Points of which the first inputs are shared by successive points, and results that are summed over
-   successive points. */
+/* Points in groups of successive points. The first inputs are those of the group; results may be sums
+   over the group. */
 typedef struct {
     const double *shared, *own, *seeds;
-    Py_ssize_t count, first;            /* points; inputs that are shared */
-    Py_ssize_t sharing, seeded, summed; /* successive points of shared inputs, seeds, results */
-    Py_ssize_t once;                    /* instructions that need shared inputs only */
+    const int32_t *group;              /* of each point; NULL: groups have equal size */
+    Py_ssize_t count, first, seeded;   /* points; inputs that are shared; inputs with seeds */
+    Py_ssize_t sharing, same, summed;  /* successive points of shared inputs, seeds, results; 0: groups */
+    Py_ssize_t once;                   /* instructions that need shared inputs only */
 } Points;
 
-/* Number of the points from `at` that are computed together, at most L: all share their inputs. */
-static Py_ssize_t together_from(const Points *x, Py_ssize_t at, Py_ssize_t L) {
-    Py_ssize_t most = x->count - at < L ? x->count - at : L;
-    const Py_ssize_t left = x->sharing - at % x->sharing, seeded = x->seeded - at % x->seeded;
-    if (x->sharing > 1 && left < most) most = left;
-    if (x->seeded > 1 && seeded < most) most = seeded;
-    return most;
+/* Part to which a point belongs, of parts of `size` successive points. */
+INLINE Py_ssize_t part_of(const Points *x, Py_ssize_t size, Py_ssize_t at) {
+    return size == 1 ? at : size ? at / size : x->group[at];
 }
 
-/* Whether the points from `at` share none of their inputs with the points before. */
-static int begins(const Points *x, Py_ssize_t at) { return at % x->sharing == 0; }
+/* Whether a part begins at a point. */
+INLINE int begins(const Points *x, Py_ssize_t size, Py_ssize_t at) {
+    if (size) return size == 1 || at % size == 0;
+    return at == 0 || x->group[at] != x->group[at - 1];
+}
+
+/* Number of the points from `at` in the same part, at most `most`; parts of single points count as
+   one part. */
+INLINE Py_ssize_t left_in(const Points *x, Py_ssize_t size, Py_ssize_t at, Py_ssize_t most) {
+    Py_ssize_t n = size > 1 ? size - at % size : size ? most : 1;
+    while (!size && n < most && x->group[at + n] == x->group[at]) n++;
+    return n < most ? n : most;
+}
+
+/* Number of the points from `at` that are computed together, at most L. They share inputs and seeds,
+   or none of them does with another. */
+static Py_ssize_t together_from(const Points *x, Py_ssize_t at, Py_ssize_t L) {
+    const Py_ssize_t most = x->count - at < L ? x->count - at : L;
+    return left_in(x, x->same, at, left_in(x, x->sharing, at, most));
+}
 
 /* Write the inputs of the points from `at`, in L lanes; lanes beyond the last point repeat one. */
 static void inputs_to(const Program *p, const Points *x, Py_ssize_t at, Py_ssize_t wide,
                       double *V, Py_ssize_t L) {
     const Py_ssize_t rest = p->inputs - x->first;
+    const int fresh = x->first > 0 && begins(x, x->sharing, at);
     for (Py_ssize_t l = 0; l < L; l++) {
         const Py_ssize_t from = at + (l < wide ? l : 0);
-        const double *shared = x->shared + from / x->sharing * x->first;
-        for (Py_ssize_t k = 0; k < x->first && begins(x, at); k++) V[k * L + l] = shared[k];
         const double *own = x->own + from * rest;
         for (Py_ssize_t k = 0; k < rest; k++) V[(x->first + k) * L + l] = own[k];
+        if (!fresh) continue;
+        const double *shared = x->shared + part_of(x, x->sharing, from) * x->first;
+        for (Py_ssize_t k = 0; k < x->first; k++) V[k * L + l] = shared[k];
     }
 }
 
-/* results: (points/summed, outputs) */
+/* results: (rows, outputs) */
 static int run_values(const Program *p, const Points *x, double *results) {
     const Py_ssize_t L = x->count < 4 ? 1 : LANES; /* a few points: one by one */
     double *V = calloc(L * (p->slots + p->constant_count), sizeof(double));
     if (V == NULL) return -1;
     constants_to(p, V, (int)L);
     for (Py_ssize_t at = 0, wide; at < x->count; at += wide) {
-        const Py_ssize_t first = begins(x, at) ? 0 : x->once;
+        const Py_ssize_t first = begins(x, x->sharing, at) ? 0 : x->once;
         wide = together_from(x, at, L);
         inputs_to(p, x, at, wide, V, L);
         (L == 1 ? run_single : run_lanes)(p->code + WORDS * first, p->count - first, p->extra, V);
         for (Py_ssize_t l = 0; l < wide; l++) {
-            double *row = results + (at + l) / x->summed * p->results;
-            const int starts = (at + l) % x->summed == 0;
+            double *row = results + part_of(x, x->summed, at + l) * p->results;
+            const int starts = begins(x, x->summed, at + l);
             for (Py_ssize_t k = 0; k < p->results; k++)
                 row[k] = V[(Py_ssize_t)p->outputs[k] * L + l] + (starts ? -0.0 : row[k]);
         }
@@ -161,31 +178,36 @@ static void follow(const Program *p, uint16_t *code, uint8_t *active) {
     }
 }
 
-/* Derivatives along `wide` of T directions, from `first`: results are (points/summed, outputs, 1 + T).
+/* Derivatives along `wide` of T directions, from `first`: results are (rows, outputs, 1 + T).
    Values are written with the first of them. D has room for `wide` directions in L lanes. */
 static void run_some_slopes(const Program *p, const Points *x, Py_ssize_t T, Py_ssize_t first,
                             int wide, Py_ssize_t L, const int32_t *varies, double *V, double *D,
                             double *results) {
     const Dual computed = dual_of(wide, L);
     for (Py_ssize_t at = 0, lanes; at < x->count; at += lanes) {
-        const Py_ssize_t skipped = begins(x, at) ? 0 : x->once;
+        const Py_ssize_t skipped = begins(x, x->sharing, at) ? 0 : x->once;
         lanes = together_from(x, at, L);
         inputs_to(p, x, at, lanes, V, L);
-        for (Py_ssize_t l = 0; l < L && at % x->seeded == 0; l++) {
-            const double *seed = x->seeds + (at + (l < lanes ? l : 0)) / x->seeded * p->inputs * T;
-            for (Py_ssize_t k = 0; k < p->inputs; k++)
+        for (Py_ssize_t l = 0; l < L && begins(x, x->same, at); l++) {
+            const Py_ssize_t part = part_of(x, x->same, at + (l < lanes ? l : 0));
+            const double *seed = x->seeds + part * x->seeded * T;
+            for (Py_ssize_t k = 0; k < x->seeded; k++)
                 for (int t = 0; t < wide; t++)
                     D[(k * wide + t) * L + l] = seed[k * T + first + t];
         }
         computed(p->code + WORDS * skipped, p->count - skipped, p->extra, V, D, wide);
+        double *rows[FOUR];
+        int starts[FOUR];
+        for (Py_ssize_t l = 0; l < lanes; l++) {
+            rows[l] = results + part_of(x, x->summed, at + l) * p->results * (1 + T);
+            starts[l] = begins(x, x->summed, at + l);
+        }
         for (Py_ssize_t k = 0; k < p->results; k++) {
             const Py_ssize_t slot = p->outputs[k];
-            for (Py_ssize_t l = 0; l < lanes; l++) {
-                double *row = results + ((at + l) / x->summed * p->results + k) * (1 + T);
-                double *slopes = row + 1 + first;
-                const int starts = (at + l) % x->summed == 0;
-                if (first == 0) row[0] = V[slot * L + l] + (starts ? -0.0 : row[0]);
-                if (starts) memset(slopes, 0, sizeof(double) * wide);
+            for (Py_ssize_t l = 0; l < lanes; l++, rows[l - 1] += 1 + T) {
+                double *row = rows[l], *slopes = row + 1 + first;
+                if (first == 0) row[0] = V[slot * L + l] + (starts[l] ? -0.0 : row[0]);
+                if (starts[l]) memset(slopes, 0, sizeof(double) * wide);
                 if (!varies[k]) continue;
                 for (int t = 0; t < wide; t++) slopes[t] += D[(slot * wide + t) * L + l];
             }
@@ -295,51 +317,64 @@ static PyObject *checked(PyObject *self, PyObject *args) {
 }
 
 PyDoc_STRVAR(run_doc,
-    "run(program, shared, first, own, seeds, width, results)\n\n"
-    "Run a checked program for points. The first inputs (groups, first) are each shared by the same\n"
-    "number of successive points; the others are (points, inputs - first). Without seeds (width 0),\n"
-    "`results` is (rows, outputs). With seeds (groups, inputs, width) it is (rows, outputs,\n"
-    "1 + width); width is a multiple of 4. Each row is the sum over the same number of successive points.");
+    "run(program, shared, first, own, seeds, seeded, width, group, results)\n\n"
+    "Run a checked program for points. The first inputs (groups, first) are each shared by successive\n"
+    "points, as many for every group, or those of which `group` (points,), int32, is the number; the\n"
+    "others are (points, inputs - first). Without seeds (width 0), `results` is (rows, outputs). With\n"
+    "seeds (groups, seeded, width) of the first inputs it is (rows, outputs, 1 + width); width is a\n"
+    "multiple of 4. Each row is the sum over the points of a group.");
 
-/* Number of successive points in each of the parts of a buffer; 0 if they do not fit. */
-static Py_ssize_t successive(Py_ssize_t points, Py_ssize_t size, Py_ssize_t item) {
-    if (item == 0) return size == 0;
+/* Number of successive points in each part of a buffer: 0 if they are the groups, -1 if they do not
+   fit. */
+static Py_ssize_t successive(const Points *x, Py_ssize_t groups, Py_ssize_t size, Py_ssize_t item) {
+    if (item == 0) return size == 0 ? 1 : -1;
     const Py_ssize_t parts = size / item;
-    if (parts * item != size || (parts == 0) != (points == 0)) return 0;
-    return points == 0 ? 1 : points % parts ? 0 : points / parts;
+    if (parts * item != size || (parts == 0) != (x->count == 0)) return -1;
+    if (x->group != NULL && parts == groups) return 0;
+    return x->count == 0 ? 1 : x->count % parts ? -1 : x->count / parts;
+}
+
+/* Number of groups of successive points; -1 if a group is empty or not in order. */
+static Py_ssize_t groups_of(const int32_t *group, Py_ssize_t points) {
+    for (Py_ssize_t k = 0; k < points; k++)
+        if (group[k] != (k ? group[k - 1] : 0) && (k == 0 || group[k] != group[k - 1] + 1)) return -1;
+    return points ? group[points - 1] + 1 : 0;
 }
 
 static PyObject *run(PyObject *self, PyObject *args) {
-    Py_buffer view[4];
+    Py_buffer view[5];
+    static const Py_ssize_t item[5] = {8, 8, 8, 4, 8};
     int width, valid = 1, failed = 0;
-    Py_ssize_t size[4];
+    Py_ssize_t size[5], groups = 0;
     Points x = {0};
     Checked *program;
     (void)self;
-    if (!PyArg_ParseTuple(args, "O!y*ny*y*iw*", checked_type, &program, &view[0], &x.first, &view[1],
-                          &view[2], &width, &view[3]))
+    if (!PyArg_ParseTuple(args, "O!y*ny*y*niy*w*", checked_type, &program, &view[0], &x.first,
+                          &view[1], &view[2], &x.seeded, &width, &view[3], &view[4]))
         return NULL;
     const Program *p = &program->p;
-    for (int k = 0; k < 4; k++) valid &= sized(&view[k], 8, &size[k]);
-    valid = valid && x.first >= 0 && x.first < p->inputs
+    for (int k = 0; k < 5; k++) valid &= sized(&view[k], item[k], &size[k]);
+    valid = valid && x.first >= 0 && x.first < p->inputs && x.seeded >= 0 && x.seeded <= p->inputs
          && width >= 0 && width % FOUR == 0;
     if (valid) {
         const Py_ssize_t rest = p->inputs - x.first;
         x.shared = view[0].buf, x.own = view[1].buf, x.seeds = view[2].buf;
         x.count = size[1] / rest;
-        x.sharing = successive(x.count, size[0], x.first);
-        x.seeded = successive(x.count, size[2], p->inputs * width);
-        x.summed = successive(x.count, size[3], p->results * (1 + width));
-        valid = size[1] == x.count * rest && x.sharing && x.seeded && x.summed;
+        valid = size[1] == x.count * rest && (size[3] == 0 || size[3] == x.count);
+        if (valid && size[3]) x.group = view[3].buf, groups = groups_of(x.group, x.count);
+        x.sharing = successive(&x, groups, size[0], x.first);
+        x.same = successive(&x, groups, size[2], x.seeded * width);
+        x.summed = successive(&x, groups, size[4], p->results * (1 + width));
+        valid = valid && groups >= 0 && x.sharing >= 0 && x.same >= 0 && x.summed >= 0;
         x.once = x.first < program->shared ? 0 : program->once;
     }
     if (valid) {
         Py_BEGIN_ALLOW_THREADS
-        failed = width == 0 ? run_values(p, &x, view[3].buf)
-                            : run_slopes(p, &x, width, program->varies, view[3].buf);
+        failed = width == 0 ? run_values(p, &x, view[4].buf)
+                            : run_slopes(p, &x, width, program->varies, view[4].buf);
         Py_END_ALLOW_THREADS
     }
-    for (int k = 0; k < 4; k++) PyBuffer_Release(&view[k]);
+    for (int k = 0; k < 5; k++) PyBuffer_Release(&view[k]);
     if (!valid) return PyErr_SetString(PyExc_ValueError, "not the points of the program"), NULL;
     if (failed) return PyErr_NoMemory();
     Py_RETURN_NONE;

@@ -42,6 +42,8 @@ MOST_SLOTS: Final = 2**16
 """Largest number of slots that an instruction can name."""
 NOTHING: Final = np.empty((0, 0, 0))
 """No shared inputs, or no seeds, of `Program.duals`."""
+EQUAL: Final = np.empty(0, dtype=np.int32)
+"""Groups of points of equal size, of `Program.duals`."""
 _FROZEN: Final = 16
 """Flag of an instruction whose first operand counts as a constant, without derivative; the flag of
 the second operand is twice this number, that of the third four times."""
@@ -119,30 +121,43 @@ class Program:
             read[slots.ravel()] = True
         return read[: self.inputs]
 
-    def duals(self, shared: Array, own: Array, seeds: Array, rows: int | None = None) -> Array:
+    def duals(
+        self,
+        shared: Array,
+        own: Array,
+        seeds: Array,
+        rows: int | None = None,
+        group: Array = EQUAL,
+    ) -> Array:
         """Outputs and their slopes (rows, outputs, 1 + directions); outputs come first.
 
         Parameters
         ----------
-        shared : the first inputs (groups, inputs), each for the same number of successive points
+        shared : the first inputs (groups, inputs), each for some successive points
         own : the other inputs of every point, (points, inputs)
-        seeds : change of every input in every direction (groups, inputs, directions), each for the
-            same number of successive points; empty: values only
-        rows : number of rows, each the sum over the same number of successive points; None: one for
-            every point
+        seeds : change of the first inputs in every direction (groups, inputs, directions), each for
+            some successive points; empty: values only
+        rows : number of rows, each the sum over some successive points; None: one for every point
+        group : the group of every point (points,), int32, if groups differ in size
         """
         size = (len(own) if rows is None else rows, len(self.outputs))
         shared, own = (np.ascontiguousarray(part, dtype=float) for part in (shared, own))
+        inputs, directions = seeds.shape[1:]
+        if not directions:
+            found = np.empty((*size, 1))
+            runnable = self._runnable(None)
+            COMPILED.run(runnable, shared, shared.shape[1], own, seeds, inputs, 0, group, found)
+            return found
         active = np.flatnonzero(seeds.any(axis=(0, 1)))  # other directions change nothing
         count, width = len(active), -(-len(active) // WIDTH) * WIDTH
-        padded = np.zeros((*seeds.shape[:2], width))
-        padded[:, :, :count] = seeds if count == seeds.shape[2] else seeds[:, :, active]
+        padded = np.zeros((len(seeds), inputs, width))
+        padded[:, :, :count] = seeds if count == directions else seeds[:, :, active]
         found = np.empty((*size, 1 + width))
         runnable = self._runnable(padded.any(axis=(0, 2)) if count else None)
-        COMPILED.run(runnable, shared, shared.shape[1], own, padded, width, found)
-        if count == seeds.shape[2]:
+        COMPILED.run(runnable, shared, shared.shape[1], own, padded, inputs, width, group, found)
+        if count == directions:
             return found[:, :, : 1 + count]
-        results = np.zeros((*size, 1 + seeds.shape[2]))
+        results = np.zeros((*size, 1 + directions))
         results[:, :, 0], results[:, :, 1 + active] = found[:, :, 0], found[:, :, 1 : 1 + count]
         return results
 
@@ -201,10 +216,10 @@ class Program:
 
         Parameters
         ----------
-        moving : whether each input changes, (inputs,)
+        moving : whether each input changes, (inputs,); others of the inputs do not
         """
         code, active = self.code.copy(), np.zeros(self.slots, dtype=np.uint8)
-        active[: self.inputs] = moving
+        active[: len(moving)] = moving
         COMPILED.follow(code, active, self.slots)
         ends = np.append(active, np.zeros(len(self.constants), dtype=np.uint8))[self.outputs]
         return code, np.where(self.frozen, 0, ends).astype(np.int32)

@@ -17,7 +17,7 @@ import numpy as np
 from ..numeric import STEP, Array, complexed, duals_of, group_starts, group_width
 from . import program as programs, program_store
 from .arrays import Recorder, elements
-from .program import NOTHING, Program
+from .program import EQUAL, NOTHING, Program
 from .program_store import MOST_RECORDINGS, Recording
 
 FEW = 20
@@ -81,7 +81,14 @@ class RecordedFunction:
             return np.empty((self.recording.rows, 0), points.dtype)
         return self._slopes(points) if np.iscomplexobj(points) else self._values(points)
 
-    def duals(self, shared: Array, own: Array, seeds: Array, rows: int | None = None) -> Array:
+    def duals(
+        self,
+        shared: Array,
+        own: Array,
+        seeds: Array,
+        rows: int | None = None,
+        group: Array = EQUAL,
+    ) -> Array:
         """Results with their slopes (rows, results, 1 + directions), see `Program.duals`."""
         if not self.reason and self.recording is None and len(own):
             self._record(np.concatenate([shared[0], own[0]]))
@@ -89,30 +96,34 @@ class RecordedFunction:
         count = len(own) if rows is None else rows
         if recording is not None and programs.AVAILABLE:
             whole = len(recording.program.outputs) == recording.rows  # without guards
-            results = recording.program.duals(shared, own, seeds, count if whole else None)
+            results = recording.program.duals(shared, own, seeds, count if whole else None, group)
             if whole:
                 return results
             outside = np.flatnonzero(~recording.holds(results[:, :, 0]))
             results = results[:, : recording.rows]
             if len(outside):
-                results[outside] = self._by_function(shared, own, seeds, outside)
+                results[outside] = self._by_function(shared, own, seeds, outside, group)
         else:
-            results = self._by_function(shared, own, seeds, np.arange(len(own)))
+            results = self._by_function(shared, own, seeds, np.arange(len(own)), group)
         if count == len(own):
             return results
-        return results.reshape(count, -1, *results.shape[1:]).sum(axis=1)
+        return np.add.reduceat(results, np.searchsorted(_part(group, count, own), range(count)))
 
-    def _by_function(self, shared: Array, own: Array, seeds: Array, points: Array) -> Array:
+    def _by_function(
+        self, shared: Array, own: Array, seeds: Array, points: Array, group: Array
+    ) -> Array:
         """The same by the function itself, at some of the points."""
-        group = points * len(shared) // max(len(own), 1)
-        values = np.concatenate([shared[group], own[points]], axis=1)
+        values = np.concatenate(
+            [shared[_part(group, len(shared), own)[points]], own[points]], axis=1
+        )
         directions = seeds.shape[2]
         with np.errstate(all="ignore"):
             if not directions:
                 return self.function(values.T).T[:, :, None]
-            steps = seeds[points * len(seeds) // max(len(own), 1)]
-            stepped = (values[:, :, None] + 1j * STEP * steps).transpose(1, 0, 2)
-            rows = self.function(stepped.reshape(len(stepped), -1))
+            stepped = np.repeat(values.astype(complex)[:, :, None], directions, axis=2)
+            changed = seeds[_part(group, len(seeds), own)[points]]
+            stepped[:, : seeds.shape[1]] += 1j * STEP * changed
+            rows = self.function(stepped.transpose(1, 0, 2).reshape(values.shape[1], -1))
         rows = rows.reshape(len(rows), len(points), directions).transpose(1, 0, 2)
         return np.concatenate([rows.real[:, :, :1], rows.imag / STEP], axis=2)
 
@@ -255,6 +266,13 @@ def _agrees(recording: Recording, points: Array, expected: Array) -> bool:
     rows = results[:, : recording.rows].T[:, (holds := recording.holds(results))]
     recording.checked = bool(holds[0]) and same(rows, expected[:, holds])
     return recording.checked
+
+
+def _part(group: Array, parts: int, own: Array) -> Array:
+    """Part to which every point belongs: its group, or one of parts of equal size."""
+    if len(group) and parts == group[-1] + 1:
+        return group
+    return np.arange(len(own)) * parts // max(len(own), 1)
 
 
 def same(first: Array, second: Array, floor: float | Array = 1.0) -> bool:

@@ -11,43 +11,46 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from ...base.numeric import Array
 from ...base.symbolic.recorded import RecordedFunction
 from ...models import endurance, rainflow
 from .numbers import LIFE, STRESS, History, SamplePlan
-from .samples import NearSamples, SampleResults
+from .sampling import NearSamples, Rows, SampleResults
 
-Rows = npt.NDArray[np.intp]
 _LOCAL = ("largest", "smallest", *STRESS)
 """Inputs of the damage of a counted cycle: the ends of the load, and the numbers of the part."""
 
 
-class _Counted(NamedTuple):
-    """Samples at the ends of the counted cycles of a duty cycle."""
+class _Spots(NamedTuple):
+    """Samples, and the output that is the load there."""
 
+    rows: Rows
+    """(loads, counted cycles, duty cycles, designs)"""
     outputs: Rows
-    """Output that is the load at every sample (loads, samples, designs)."""
-    largest: Rows
-    """(loads, cycles, designs)"""
-    smallest: Rows
+
+
+class _Counted(NamedTuple):
+    """Samples at the ends of the counted cycles of all duty cycles of a life."""
+
+    largest: _Spots
+    smallest: _Spots
     times: Array
     """1, or 0 where a load has fewer cycles than another."""
-    highest: Rows
-    """Samples of the largest and of the smallest load (loads, 1, designs)."""
-    lowest: Rows
+    highest: _Spots
+    """Samples of the largest and of the smallest load."""
+    lowest: _Spots
 
     @property
     def rows(self) -> tuple[Rows, ...]:
         """All samples."""
-        return self.largest, self.smallest, self.highest, self.lowest
+        return self.largest.rows, self.smallest.rows, self.highest.rows, self.lowest.rows
 
 
 class _Ends(NamedTuple):
     """Load as a share of its full pulse at both ends of counted cycles, with slopes.
 
-    Arrays are (loads, cycles, designs, 1 + directions).
+    Arrays are (loads, counted cycles, designs, 1 + directions), or with duty cycles as third axis.
     """
 
     largest: Array
@@ -62,9 +65,11 @@ class CycleFatigue:
     Parameters
     ----------
     plan : structure of the design
-    cycles : names of the cycles with a stated number of repeats
+    cycles : names of all cycles
+    repeated : which of them have a stated number of repeats
     rows : row of every number by name
     outputs : names of the results of a sample
+    first : number of the first sample of every cycle, and of all samples (cycles + 1,)
 
     Attributes
     ----------
@@ -76,12 +81,14 @@ class CycleFatigue:
         self,
         plan: SamplePlan,
         cycles: Sequence[str],
+        repeated: Sequence[int],
         rows: Mapping[str, int],
         outputs: Sequence[str],
+        first: Rows,
     ) -> None:
-        self.cycles, self._rows, self._outputs = tuple(cycles), rows, tuple(outputs)
+        names, self._outputs = [cycles[k] for k in repeated], tuple(outputs)
         self.outputs = [x for x in outputs if x.startswith("pulse_") or x == "position"]
-        parts = sorted(enumerate(plan.parts if cycles else ()), key=lambda pair: pair[1].bolted)
+        parts = sorted(enumerate(plan.parts if names else ()), key=lambda pair: pair[1].bolted)
         self._loads: tuple[History, ...] = tuple(dict.fromkeys(part.load for _, part in parts))
         self._load = np.array([self._loads.index(part.load) for _, part in parts], dtype=np.intp)
         self._tension = np.array([part.only_tension for _, part in parts], dtype=bool)
@@ -91,118 +98,96 @@ class CycleFatigue:
             [[rows[f"part{i}.{key}"] for i, _ in metal] for key in STRESS], dtype=np.intp
         )
         self._life = np.array([rows[f"part{i}.life"] for i, _ in bolts], dtype=np.intp)
-        words = (*self.cycles, "") if parts else ()
+        words = (*names, "") if parts else ()
         self.keys = [(cycle, "damage", part.place) for cycle in words for _, part in parts]
+        self._lives = np.array([[rows[f"{name}|{key}"] for key in LIFE] for name in names])
+        if parts:
+            starts, ends = first[:-1][repeated], first[1:][repeated]
+            places = starts[:, None] + np.arange((ends - starts).max())
+            self._samples = np.minimum(places, ends[:, None] - 1)
         self._damage_of = RecordedFunction(_damage_of, _LOCAL, np.ones(len(_LOCAL)))
 
-    def counted(self, tracks: Mapping[str, SampleResults]) -> dict[str, _Counted]:
-        """The counted cycles of every duty cycle of the life."""
-        return {name: self._counted(tracks[name]) for name in self.cycles if self.keys}
+    def counted(self, track: SampleResults) -> _Counted:
+        """The counted cycles of every duty cycle of the life.
 
-    def _counted(self, track: SampleResults) -> _Counted:
-        samples, _, designs = track.values.shape
-        outputs = np.empty((len(self._loads), samples, designs), dtype=np.intp)
-        levels = np.empty(outputs.shape)
+        Samples of short cycles are filled up by the last, which changes no counted cycle.
+        """
+        rows = self._samples
+        shape = (len(self._loads), *rows.shape, track.values.shape[2])
+        outputs, levels = np.empty(shape, dtype=np.intp), np.empty(shape)
         for k, load in enumerate(self._loads):
             if load == "middle":
-                x = track.real("position")
-                behind = x > (x.max(axis=0) + x.min(axis=0)) / 2
+                x = track.real("position")[rows]
+                behind = x > (x.max(axis=1, keepdims=True) + x.min(axis=1, keepdims=True)) / 2
                 a, b = (self._outputs.index(f"pulse_{chamber}") for chamber in "ab")
                 outputs[k] = np.where(behind, a, b)
-                levels[k] = np.where(behind, track.values[:, a], track.values[:, b])
+                levels[k] = np.where(behind, track.values[rows, a], track.values[rows, b])
             else:
                 outputs[k] = self._outputs.index(f"pulse_{load}")
-                levels[k] = track.real(f"pulse_{load}")
-        pairs = rainflow.repeating_cycles(history=levels.transpose(1, 0, 2).reshape(samples, -1))
+                levels[k] = track.real(f"pulse_{load}")[rows]
+        history = levels.transpose(2, 0, 1, 3)
+        pairs = rainflow.repeating_cycles(history=history.reshape(len(history), -1))
+        loads = np.arange(shape[0])[:, None, None, None]
+        cycles, designs = np.arange(shape[1])[:, None], np.arange(shape[3])
 
         def by_load(values: Array) -> Array:
-            return values.reshape(len(values), len(self._loads), designs).transpose(1, 0, 2)
+            return values.reshape(len(values), *history.shape[1:]).transpose(1, 0, 2, 3)
+
+        def spots(place: Rows) -> _Spots:
+            return _Spots(rows[cycles, place], outputs[loads, cycles, place, designs])
 
         return _Counted(
-            outputs,
-            by_load(pairs.largest),
-            by_load(pairs.smallest),
+            spots(by_load(pairs.largest)),
+            spots(by_load(pairs.smallest)),
             by_load(pairs.count),
-            np.argmax(levels, axis=1)[:, None],
-            np.argmin(levels, axis=1)[:, None],
+            spots(np.argmax(levels, axis=2)[:, None]),
+            spots(np.argmin(levels, axis=2)[:, None]),
         )
 
-    def damages(
-        self,
-        values: Array,
-        seeds: Array,
-        counted: Mapping[str, _Counted],
-        near: Mapping[str, NearSamples],
-        wanted: Array,
-    ) -> Array:
+    def damages(self, numbers: Array, counted: _Counted, near: NearSamples, wanted: Array) -> Array:
         """Miner's sums with slopes (keys, designs, 1 + directions).
 
         Results that are not wanted may be 0.
 
         Parameters
         ----------
-        values, seeds : numbers (numbers, designs), and their changes in every direction
+        numbers : with slopes (numbers, designs, 1 + directions)
         counted, near : the counted cycles, and the samples at their ends with slopes
+        wanted : whether each result is wanted (keys,)
         """
-        numbers = np.concatenate([values[:, :, None], seeds], axis=2)
-        ends = {name: self._at(counted[name], near[name]) for name in self.cycles}
-        own = [self._with_starts(name, *ends[name], numbers) for name in self.cycles]
-        whole = [*own]
-        if len(self.cycles) > 1:
-            whole.append(self._changes([x[1] for x in ends.values()], numbers))
-        parts = len(self._load)
+        parts, shape = len(self._load), numbers.shape[1:]
+        high, low = (near.at(x.outputs, x.rows) for x in (counted.highest, counted.lowest))
+        lives = numbers[self._lives]  # (duty cycles, repeats and starts, designs, 1 + directions)
+        own = self._with_starts(counted, near, high, low, lives)
         blocks = [
-            self._damage(numbers, cycles)
+            self._damage(numbers, _Ends(*(x[:, :, k] for x in own)))
             if wanted[k * parts : (k + 1) * parts].any()
-            else np.zeros((parts, *numbers.shape[1:]))
-            for k, cycles in enumerate(own)
+            else np.zeros((parts, *shape))
+            for k in range(len(lives))
         ]
-        joined = whole[0]
-        if len(whole) > 1:
-            joined = _Ends(*(np.concatenate(part, axis=1) for part in zip(*whole, strict=True)))
-        return np.concatenate([*blocks, self._damage(numbers, joined)])
+        used = np.append(counted.times.any(axis=(0, 3)), [[True] * len(lives)], axis=0)
+        whole = [x[:, used] for x in own]
+        if len(lives) > 1:
+            changes = _changes(high[:, 0], low[:, 0], lives[:, 1])
+            whole = [np.concatenate(pair, axis=1) for pair in zip(whole, changes, strict=True)]
+        return np.concatenate([*blocks, self._damage(numbers, _Ends(*whole))])
 
-    def _at(self, counted: _Counted, near: NearSamples) -> tuple[_Ends, _Ends]:
-        """The counted cycles, and the largest and the smallest load; counts are shares."""
-        designs = np.arange(counted.outputs.shape[2])
-        loads = np.arange(len(self._loads))[:, None, None]
-
-        def ends(largest: Rows, smallest: Rows, count: Array) -> _Ends:
-            high, low = (
-                near.at(counted.outputs[loads, rows, designs], rows) for rows in (largest, smallest)
-            )
-            return _Ends(high, low, count)
-
-        one = np.ones(counted.highest.shape)
-        return (
-            ends(counted.largest, counted.smallest, counted.times),
-            ends(counted.highest, counted.lowest, one),
-        )
-
-    def _with_starts(self, name: str, cycles: _Ends, ends: _Ends, numbers: Array) -> _Ends:
-        """Counted cycles of a duty cycle in a life, and those of its starts."""
-        repeats, starts = (numbers[self._rows[f"{name}|{key}"]] for key in LIFE)
-        high, low = ends.largest, ends.smallest
+    @staticmethod
+    def _with_starts(
+        counted: _Counted, near: NearSamples, high: Array, low: Array, lives: Array
+    ) -> _Ends:
+        """Counted cycles of the duty cycles in a life, and those of their starts."""
         peak: Array = np.where(np.abs(high[..., :1]) >= np.abs(low[..., :1]), high, low)
         up: Array = np.where(peak[..., :1] > 0, peak, 0.0)
-        return _Ends(
-            np.concatenate([cycles.largest, up], axis=1),
-            np.concatenate([cycles.smallest, peak - up], axis=1),
-            np.concatenate(
-                [cycles.times[..., None] * repeats, ends.times[..., None] * starts], axis=1
-            ),
+        largest, smallest = (
+            near.at(x.outputs, x.rows) for x in (counted.largest, counted.smallest)
         )
-
-    def _changes(self, ends: Sequence[_Ends], numbers: Array) -> _Ends:
-        """Cycles from the smallest to the largest load of all duty cycles, one for every start."""
-        starts = numbers[[self._rows[f"{name}|starts"] for name in self.cycles]]
-        most = np.argmax(starts[..., 0], axis=0)
-        starts = starts[most, np.arange(starts.shape[1])]
-        high = np.concatenate([x.largest for x in ends], axis=1)
-        low = np.concatenate([x.smallest for x in ends], axis=1)
-        high = np.take_along_axis(high, np.argmax(high[..., :1], axis=1)[:, None], axis=1)
-        low = np.take_along_axis(low, np.argmin(low[..., :1], axis=1)[:, None], axis=1)
-        return _Ends(high, low, np.broadcast_to(starts, high.shape))
+        starts = np.broadcast_to(lives[:, 1], up.shape)
+        return _Ends(
+            np.concatenate([largest, up], axis=1),
+            np.concatenate([smallest, peak - up], axis=1),
+            np.concatenate([counted.times[..., None] * lives[:, 0], starts], axis=1),
+        )
 
     def _damage(self, numbers: Array, ends: _Ends) -> Array:
         """Miner's sums of all parts with slopes (parts, designs, 1 + directions)."""
@@ -259,6 +244,18 @@ class CycleFatigue:
         seeds = np.eye(len(_LOCAL))[None] if steep else np.zeros((1, len(_LOCAL), 0))
         found = self._damage_of.duals(np.empty((1, 0)), points.reshape(-1, len(_LOCAL)), seeds)
         return found.reshape(*shape, -1)
+
+
+def _changes(high: Array, low: Array, starts: Array) -> _Ends:
+    """Cycles from the smallest to the largest load of all duty cycles, one for every start.
+
+    Loads are (loads, duty cycles, designs, 1 + directions), starts the same for all loads.
+    """
+    most = np.argmax(starts[..., 0], axis=0)
+    starts = starts[most, np.arange(starts.shape[1])]
+    high = np.take_along_axis(high, np.argmax(high[..., :1], axis=1)[:, None], axis=1)
+    low = np.take_along_axis(low, np.argmin(low[..., :1], axis=1)[:, None], axis=1)
+    return _Ends(high, low, np.broadcast_to(starts, high.shape))
 
 
 def _summed(factors: Array, steps: Array) -> Array:

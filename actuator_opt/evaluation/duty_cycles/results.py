@@ -32,17 +32,8 @@ from ...models import heat_transfer, supply_sizing
 from ..values import Values
 from .fatigue import CycleFatigue
 from .numbers import CYCLE, SamplePlan
-from .samples import (
-    COLUMNS,
-    SEAL_SUMS,
-    SUMS,
-    NearSamples,
-    Part,
-    SampleModel,
-    SampleResults,
-    leakage_at_rest,
-    parts_of,
-)
+from .samples import SEAL_SUMS, SUMS, leakage_at_rest
+from .sampling import NearSamples, Rows, SampleResults, Samples
 
 WINDOWS = 8
 """Windows of time of all cycles together (our choice). The extremes in each window are separate
@@ -131,31 +122,47 @@ class CycleModels:
         phases: Mapping[str, Sequence[float]] | None = None,
     ) -> None:
         self.plan, self.records, self.names = plan, dict(records), tuple(names)
-        self._row = {name: k for k, name in enumerate(names)}
+        row = {name: k for k, name in enumerate(names)}
         self.common = tuple(x for x in names if "|" not in x and not x.startswith("part"))
-        self._models: dict[tuple[bool, bool], SampleModel] = {}
+        common = [row[key] for key in self.common]
+        self._rows = np.array(
+            [[*common, *(row[f"{cycle}|{key}"] for key in CYCLE)] for cycle in records]
+        )
+        self._samples = Samples(plan, records, (*self.common, *CYCLE))
+        self._supplies = [
+            SupplyWeights(x.time, (phases or {}).get(k, ())) for k, x in records.items()
+        ]
+        self._strokes = _strokes_of([*records.values()], self._samples.first)
+        outputs, labels = self._samples.outputs, [ring.label for ring in plan.rings]
+        extremes = _extremes(EXTREMES, outputs)
+        extremes += [
+            (("pv", label), outputs.index(f"pv{i}"), -1.0) for i, label in enumerate(labels)
+        ]
         count = max(LEAST_WINDOWS, WINDOWS // len(records))
-        self._cycles = {
-            name: self._cycle(name, record, count, (phases or {}).get(name, ()))
-            for name, record in records.items()
-        }
-        repeated = [name for name in records if f"{name}|repeats" in self._row]
-        outputs = next(iter(self._models.values())).outputs
-        self._fatigue = CycleFatigue(plan, repeated, self._row, outputs)
-        places: list[Place] = []
-        for name, cycle in self._cycles.items():
-            places += [Place(name, *key) for key in cycle.keys]
-        places += [Place(*key) for key in self._fatigue.keys]
-        self.places = (*places, Place("", "rest_leakage"))
-
-    def _cycle(self, name: str, record: CycleRecord, count: int, phases: Sequence[float]) -> _Cycle:
-        kind = (name in self.plan.linked, record.supply_pressure is not None)
-        if kind not in self._models:
-            columns = (*COLUMNS, "supply") if kind[1] else COLUMNS
-            self._models[kind] = SampleModel(self.plan, (*self.common, *CYCLE), columns, kind[0])
-        order = [self._row[key] for key in self.common]
-        order += [self._row[f"{name}|{key}"] for key in CYCLE]
-        return _Cycle(self.plan, record, self._models[kind], order, count, phases)
+        self._extremes = [
+            (extremes, windows_of([*records.values()], count)),
+            (_extremes(ENDS, outputs), windows_of([*records.values()], 1)),
+        ]
+        sums = [(name, "") for name in SUMS] + [(name, x) for name in SEAL_SUMS for x in labels]
+        groups = [
+            [Place(cycle, *key) for key in sums for cycle in records],
+            [Place(cycle, key) for key in EXCHANGE for cycle in records],
+        ]
+        groups += [
+            [
+                Place([*records][k], name, f"{label}|{place}" if label else place)
+                for (name, label), _, _ in some
+                for k, place in windows.ranked
+            ]
+            for some, windows in self._extremes
+        ]
+        repeated = [k for k, name in enumerate(records) if f"{name}|repeats" in row]
+        self._fatigue = CycleFatigue(plan, [*records], repeated, row, outputs, self._samples.first)
+        groups.append([Place(*key) for key in self._fatigue.keys])
+        self.places = (*(place for group in groups for place in group), Place("", "rest_leakage"))
+        self._sizes = [len(group) for group in groups]
+        self._needs = self._outputs_needed()
+        self._selections: dict[bytes, _Selection] = {}
 
     def __call__(
         self, points: Array, width: int | None = None, wanted: Array | None = None
@@ -190,51 +197,145 @@ class CycleModels:
             numbers, place = _distinct(numbers)
             if numbers.shape[1] < count:
                 return self.duals(numbers, wanted)[:, place]
-        longest = max(len(record.time) for record in self.records.values())
-        most = max(1, MOST_SAMPLES // longest)
+        selection = self._selection(wanted)
+        most = max(1, MOST_SAMPLES // max(windows.rows.size for _, windows in self._extremes))
         blocks = []
         with np.errstate(all="ignore"):
             for at in range(0, count, most):
-                part = numbers[:, at : at + most]
-                blocks.append(self._results(part, wanted))
+                blocks.append(self._results(numbers[:, at : at + most], selection))
         return blocks[0] if len(blocks) == 1 else np.concatenate(blocks, axis=1)
 
     def tracks(self, values: Array) -> dict[str, SampleResults]:
         """Results of all samples of every cycle, at numbers (numbers, designs)."""
-        return {name: cycle.samples(values) for name, cycle in self._cycles.items()}
-
-    def _results(self, numbers: Array, wanted: Array | None) -> Array:
-        """Results of `duals` of designs that are computed together."""
-        values, seeds = numbers[:, :, 0], numbers[:, :, 1:]
-        wanted = np.ones(len(self.places), dtype=bool) if wanted is None else wanted
-        ends = np.cumsum([len(cycle.keys) for cycle in self._cycles.values()])
-        parts = dict(zip(self._cycles, np.split(wanted, ends), strict=False))
-        fatigued = bool(wanted[ends[-1] : -1].any())
-        pulses = self._fatigue.outputs if fatigued else ()
-        tracks = {
-            name: cycle.samples(values, cycle.needed(parts[name], pulses))
-            for name, cycle in self._cycles.items()
+        own = values[self._rows]
+        track = self._samples.values(own, self._samples.parts(own))
+        return {
+            name: SampleResults(track.values[a:b], track.outputs, track.known)
+            for name, (a, b) in zip(self.records, pairwise(self._samples.first), strict=True)
         }
-        counted = self._fatigue.counted(tracks) if fatigued else {}
-        blocks: list[Array] = []
-        near: dict[str, NearSamples] = {}
-        for name, cycle in self._cycles.items():
-            more = counted[name].rows if name in counted else ()
-            rows, near[name] = cycle.results(values, seeds, tracks[name], parts[name], more)
-            blocks.append(rows)
-        shape = (values.shape[1], 1 + seeds.shape[2])
-        if counted:
-            some = wanted[ends[-1] : -1]
-            blocks.append(self._fatigue.damages(values, seeds, counted, near, some))
+
+    def _outputs_needed(self) -> npt.NDArray[np.bool_]:
+        """Whether each result needs each output at all samples (places, outputs)."""
+        outputs, ends = self._samples.outputs, np.cumsum([0, *self._sizes])
+        needs = np.zeros((len(self.places), len(outputs)), dtype=bool)
+        for k in FLOW_SUMS:
+            cycles = len(self.records)
+            needs[k * cycles : (k + 1) * cycles, outputs.index("flow")] = True
+        needs[ends[1] : ends[2], outputs.index("position")] = True
+        for (extremes, windows), first in zip(self._extremes, ends[2:], strict=False):
+            for k, (_, place, _) in enumerate(extremes):
+                size = len(windows.ranked)
+                needs[first + k * size : first + (k + 1) * size, place] = True
+        for output in self._fatigue.outputs:
+            needs[ends[4] : ends[5], outputs.index(output)] = True
+        return needs
+
+    def _selection(self, wanted: Array | None) -> _Selection:
+        """What the wanted results (places,) need; None: all. Cached."""
+        if wanted is None:
+            wanted = np.ones(len(self.places), dtype=bool)
+        key = wanted.tobytes()
+        if key not in self._selections:
+            sums, exchange, *picked, damage, rest = np.split(wanted, np.cumsum(self._sizes))
+            taken = []
+            for (extremes, windows), some in zip(self._extremes, picked, strict=True):
+                kept = np.asarray(some.reshape(len(extremes), -1).any(axis=1))
+                outputs = np.array([output for _, output, _ in extremes])[kept]
+                signs = np.array([sign for _, _, sign in extremes])[kept]
+                taken.append(_Taken(windows, kept, outputs, signs))
+            self._selections[key] = _Selection(
+                np.asarray(self._needs[wanted].any(axis=0)),
+                np.asarray(sums.reshape(-1, len(self.records)).any(axis=1)),
+                bool(exchange.any()),
+                taken,
+                damage,
+                bool(rest.any()),
+            )
+        return self._selections[key]
+
+    def _results(self, numbers: Array, selection: _Selection) -> Array:
+        """Results of `duals` of designs that are computed together."""
+        own = numbers[self._rows]  # (cycles, numbers, designs, 1 + directions)
+        parts = self._samples.parts(own[..., 0])
+        track = self._samples.values(own[..., 0], parts, selection.needed)
+        picks = [taken.rows(track) for taken in selection.extremes]
+        counted = self._fatigue.counted(track) if selection.damage.any() else None
+        rows = [*picks, *(counted.rows if counted else ())]
+        if selection.exchange:
+            rows += [self._strokes.start, self._strokes.end]
+        near = self._samples.near(own, track, rows)
+        shape = numbers.shape[1:]
+        blocks = []
+        if selection.sums.any():
+            weights = None
+            if selection.sums[FLOW_SUMS].any():
+                weights = self._weights(track.real("flow"))
+            blocks.append(self._samples.sums(own, parts, selection.sums, weights))
         else:
-            blocks.append(np.zeros((len(self._fatigue.keys), *shape)))
+            blocks.append(np.zeros((self._sizes[0], *shape)))
+        exchanged = np.zeros((self._sizes[1], *shape))
+        blocks.append(self._exchange(own, near) if selection.exchange else exchanged)
+        for taken, pick, size in zip(selection.extremes, picks, self._sizes[2:], strict=False):
+            block = np.zeros((taken.kept.size, size // max(taken.kept.size, 1), *shape))
+            if len(pick):
+                block[taken.kept] = near.at(taken.outputs[:, None, None], pick)
+            blocks.append(block)
+        if counted:
+            blocks.append(self._fatigue.damages(numbers, counted, near, selection.damage))
+        else:
+            blocks.append(np.zeros((self._sizes[4], *shape)))
         rest = np.zeros((1, *shape))
-        if wanted[-1]:
-            columns = complexed(numbers) if seeds.size else values
+        if selection.rest:
+            columns = complexed(numbers) if shape[1] > 1 else numbers[:, :, 0]
             u = dict(zip(self.names, columns, strict=True))
             leakage = np.broadcast_to(leakage_at_rest(self.plan, u), (1, columns.shape[1]))
-            rest = duals_of(leakage, shape[1] - 1) if seeds.size else leakage[:, :, None]
-        return np.concatenate([*blocks, rest])
+            rest = duals_of(leakage, shape[1] - 1) if shape[1] > 1 else leakage[:, :, None]
+        return np.concatenate([block.reshape(-1, *shape) for block in (*blocks, rest)])
+
+    def _weights(self, flow: Array) -> Array:
+        """Weights (2, samples, designs) of the flow in ripple volume and peak flow."""
+        parts = np.split(flow, self._samples.first[1:-1])
+        weights = [supply.weights(part) for supply, part in zip(self._supplies, parts, strict=True)]
+        return np.stack([np.concatenate(part) for part in zip(*weights, strict=True)])
+
+    def _exchange(self, own: Array, near: NearSamples) -> Array:
+        """Flow of fresh oil into each chamber: of every stroke, what the line does not hold back.
+
+        All designs turn at the same samples: a lever arm does not change its sign.
+
+        Parameters
+        ----------
+        own : numbers of every cycle with slopes (cycles, numbers, designs, 1 + directions)
+        near : samples with slopes, the turning points among them
+
+        Returns
+        -------
+        (chambers * cycles, designs, 1 + directions)
+        """
+        strokes, (designs, size) = self._strokes, own.shape[2:]
+        output = self._samples.outputs.index("position")
+        start, end = (
+            near.at(output, np.broadcast_to(rows[:, None], (len(rows), designs)))
+            for rows in (strokes.start, strokes.end)
+        )
+        travel = (end - start).transpose(1, 0, 2)
+        place = self._samples.names.index
+        points = np.empty((len(EXCHANGE), *travel.shape[:2], len(_STROKE), size))
+        for k, (chamber, outward) in enumerate((("a", 1.0), ("b", -1.0))):
+            used = [place(f"area_{chamber}"), place(f"line_volume_{chamber}"), place("time_scale")]
+            points[k, :, :, 0] = outward * travel
+            points[k, :, :, 1:] = own[:, used][strokes.cycle].transpose(2, 0, 1, 3)
+        points[:, :, :, 3] *= strokes.period[strokes.cycle][:, None]
+        flat = points.reshape(-1, len(_STROKE), size)
+        groups = len(EXCHANGE) * designs
+        cycles = len(self.records)
+        group = np.arange(groups, dtype=np.int32)[:, None] * cycles + strokes.cycle
+        flows = _EXCHANGE_OF.duals(
+            np.empty((1, 0)), flat[:, :, 0], flat[:, :, 1:], groups * cycles,
+            group.ravel().astype(np.int32),
+        )  # fmt: skip
+        flows = flows.reshape(len(EXCHANGE), designs, cycles, size).transpose(0, 2, 1, 3)
+        return flows.reshape(-1, designs, size)
 
 
 def _distinct(numbers: Array) -> tuple[Array, npt.NDArray[np.intp]]:
@@ -247,183 +348,34 @@ def _distinct(numbers: Array) -> tuple[Array, npt.NDArray[np.intp]]:
     return numbers[:, firsts], place
 
 
-class _Cycle:
-    """Results of one cycle except fatigue, and the keys (name, place) of their rows."""
+class _Strokes(NamedTuple):
+    """Strokes of all cycles between turning points, by cycle."""
 
-    def __init__(
-        self,
-        plan: SamplePlan,
-        record: CycleRecord,
-        model: SampleModel,
-        order: Sequence[int],
-        count: int,
-        phases: Sequence[float],
-    ) -> None:
-        self.record, self.model, self.order = record, model, list(order)
-        self._supply = SupplyWeights(record.time, phases)
-        self._data = _data(record)
-        self._wide = np.concatenate([self._data, _neighbours(record)], axis=1)
-        self._range = record.motion.min(), record.motion.max()
-        self._parts: dict[int, tuple[list[Part], list[Part]]] = {}
-        self._turns = turning_points(record.motion)
-        self.windows, self.whole = windows_of(record, count), windows_of(record, 1)
-        labels = [ring.label for ring in plan.rings]
-        self._extremes = _extremes(EXTREMES, model.outputs)
-        self._extremes += [
-            (("pv", label), model.outputs.index(f"pv{i}"), -1.0) for i, label in enumerate(labels)
-        ]
-        self._ends = _extremes(ENDS, model.outputs)
-        sums = [(name, "") for name in SUMS] + [(name, x) for name in SEAL_SUMS for x in labels]
-        exchange = [(name, "") for name in EXCHANGE]
-        self.keys: list[tuple[str, str]] = [*sums, *exchange]
-        self._sizes = [len(sums), len(exchange)]
-        for extremes, windows in self._blocks:
-            ranked = _ranked(windows)
-            for (name, label), _, _ in extremes:
-                self.keys += [(name, f"{label}|{place}" if label else place) for place in ranked]
-            self._sizes.append(len(extremes) * len(ranked))
-        self._needs = self._outputs_needed()
-        self._selections: dict[bytes, _Selection] = {}
-        place = model.names.index
-        self._stroke = np.array(
-            [[place(f"area_{x}"), place(f"line_volume_{x}"), place("time_scale")] for x in "ab"]
-        )
+    start: Rows
+    end: Rows
+    cycle: Rows
+    period: Array
+    """Duration of each cycle [s]."""
 
-    def _outputs_needed(self) -> npt.NDArray[np.bool_]:
-        """Whether each result needs each output at all samples (keys, outputs)."""
-        outputs, ends = self.model.outputs, np.cumsum(self._sizes)
-        needs = np.zeros((len(self.keys), len(outputs)), dtype=bool)
-        needs[FLOW_SUMS, outputs.index("flow")] = True
-        needs[ends[0] : ends[1], outputs.index("position")] = True
-        for (extremes, _), first, last in zip(self._blocks, ends[1:], ends[2:], strict=False):
-            rows = np.arange(first, last)
-            places = [output for _, output, _ in extremes]
-            needs[rows, np.repeat(places, len(rows) // len(places))] = True
-        return needs
 
-    @property
-    def _blocks(self) -> tuple[tuple[list[Extreme], TimeWindows], ...]:
-        return (self._extremes, self.windows), (self._ends, self.whole)
+def _strokes_of(records: Sequence[CycleRecord], first: Rows) -> _Strokes:
+    """The strokes of records whose first samples are given.
 
-    def needed(self, wanted: Array, more: Sequence[str]) -> Array:
-        """Whether each output is needed for the wanted results, or among `more` (outputs,)."""
-        needed = self._selection(wanted).needed.copy()
-        needed[[self.model.outputs.index(name) for name in more]] = True
-        return needed
-
-    def _selection(self, wanted: Array) -> _Selection:
-        """Outputs, sums and extremes that the wanted results need; cached."""
-        key = wanted.tobytes()
-        if key not in self._selections:
-            sums, exchange, *picked = np.split(wanted, np.cumsum(self._sizes[:-1]))
-            taken = []
-            for (extremes, windows), some in zip(self._blocks, picked, strict=True):
-                kept = np.asarray(some.reshape(len(extremes), -1).any(axis=1))
-                outputs = np.array([output for _, output, _ in extremes])[kept]
-                signs = np.array([sign for _, _, sign in extremes])[kept]
-                taken.append(_Taken(windows, kept, outputs, signs))
-            needed = np.asarray(self._needs[wanted].any(axis=0))
-            self._selections[key] = _Selection(needed, sums, bool(exchange.any()), taken)
-        return self._selections[key]
-
-    def samples(self, values: Array, wanted: Array | None = None) -> SampleResults:
-        """Results of all samples at values (all numbers, designs); None: all outputs."""
-        numbers = values[self.order]
-        if wanted is None:
-            wanted = np.ones(len(self.model.outputs), dtype=bool)
-        parts = self._parted(numbers)[0]
-        found = self.model.results(numbers, parts, np.zeros((*numbers.shape, 0)), wanted)
-        return SampleResults(found[..., 0], self.model.outputs, wanted)
-
-    def results(
-        self,
-        values: Array,
-        seeds: Array,
-        track: SampleResults,
-        wanted: Array,
-        more: Sequence[Array],
-    ) -> tuple[Array, NearSamples]:
-        """All results (keys, designs, 1 + directions), and the samples of `more` with slopes.
-
-        Results that are not wanted may be 0.
-        """
-        values, seeds = values[self.order], seeds[self.order]
-        selection = self._selection(wanted)
-        sums, exchange = selection.sums, selection.exchange
-        picks = [taken.rows(track) for taken in selection.extremes]
-        rows = [*picks, *more]
-        if exchange:
-            rows.append(self._turns)
-        near = self._near(values, seeds, track, rows)
-        shape = (values.shape[1], 1 + seeds.shape[2])
-        blocks = [
-            self._sums(values, seeds, track, sums)
-            if sums.any()
-            else np.zeros((self._sizes[0], *shape)),
-            self._exchange(values, seeds, near) if exchange else np.zeros((self._sizes[1], *shape)),
-        ]
-        for taken, pick, size in zip(selection.extremes, picks, self._sizes[2:], strict=True):
-            block = np.zeros((taken.kept.size, size // max(taken.kept.size, 1), *shape))
-            if len(pick):
-                block[taken.kept] = near.at(taken.outputs[:, None, None], pick)
-            blocks.append(block.reshape(size, *shape))
-        return np.concatenate(blocks), near
-
-    def _near(
-        self, values: Array, seeds: Array, track: SampleResults, rows: Sequence[Array]
-    ) -> NearSamples:
-        """The samples that are in some rows of any design, with slopes."""
-        count = len(track.values)
-        if not seeds.shape[2]:
-            return NearSamples(track.values[..., None], np.arange(count))
-        marked = np.zeros(count, dtype=bool)
-        for part in rows:
-            marked[part] = True
-        part = parts_of(self._data[marked], side=0)  # so few that a second program takes longer
-        found = self.model.results(values, part, seeds, track.known)
-        return NearSamples(found, np.cumsum(marked) - 1)
-
-    def _sums(self, values: Array, seeds: Array, track: SampleResults, wanted: Array) -> Array:
-        weights = None
-        if wanted[FLOW_SUMS].any():
-            weights = self._supply.weights(track.real("flow"))
-        parts = []
-        for extending, rows, data in self._parted(values)[1]:
-            every = np.broadcast_to(data, (values.shape[1], *data.shape))
-            if weights is not None:
-                every = every.copy()
-                every[:, :, -2], every[:, :, -1] = weights.ripple[rows].T, weights.peak[rows].T
-            parts.append(Part(extending, rows, every))
-        return self.model.sums(values, parts, seeds, wanted)
-
-    def _parted(self, values: Array) -> tuple[list[Part], list[Part]]:
-        """The samples by direction at numbers of this cycle: columns, and those of sums."""
-        side = self.model.side(values, self._range)
-        if side not in self._parts:
-            self._parts[side] = parts_of(self._data, side), parts_of(self._wide, side)
-        return self._parts[side]
-
-    def _exchange(self, values: Array, seeds: Array, near: NearSamples) -> Array:
-        """Flow of fresh oil into each chamber: of every stroke, what the line does not hold back.
-
-        All designs turn at the same samples: a lever arm does not change its sign. The last stroke
-        of a closed cycle may go on in its first.
-        """
-        turns = np.broadcast_to(self._turns[:, None], (len(self._turns), values.shape[1]))
-        position = near.at(self.model.outputs.index("position"), turns)
-        strokes = position[1:] - position[:-1]
-        if self.record.closed and strokes[0, 0, 0] * strokes[-1, 0, 0] > 0:
-            strokes = np.concatenate([strokes[:1] + strokes[-1:], strokes[1:-1]])
-        numbers = np.concatenate([values[:, :, None], seeds], axis=2)
-        shape = (len(EXCHANGE), values.shape[1], len(strokes), len(_STROKE), strokes.shape[2])
-        points = np.empty(shape)  # chambers, designs, strokes, inputs, 1 + directions
-        points[:, :, :, 0] = np.stack([strokes, -strokes]).transpose(0, 2, 1, 3)
-        points[:, :, :, 1:] = numbers[self._stroke].transpose(0, 2, 1, 3)[:, :, None]
-        points[:, :, :, 3] *= self.record.time[-1] - self.record.time[0]
-        flat = points.reshape(-1, *shape[3:])
-        groups = shape[0] * shape[1]
-        flows = _EXCHANGE_OF.duals(np.empty((1, 0)), flat[:, :, 0], flat[:, :, 1:], groups)
-        return flows.reshape(*shape[:2], shape[4])
+    The last stroke of a closed cycle may go on in its first.
+    """
+    starts, ends, cycles = [], [], []
+    for k, record in enumerate(records):
+        turns = turning_points(record.motion)
+        start, end = turns[:-1], turns[1:]
+        travel = record.motion[end] - record.motion[start]
+        if record.closed and travel[0] * travel[-1] > 0:
+            start, end = np.append(start[1:-1], start[-1]), np.append(end[1:-1], end[0])
+        starts.append(first[k] + start)
+        ends.append(first[k] + end)
+        cycles.append(np.full(len(start), k))
+    period = np.array([record.time[-1] - record.time[0] for record in records])
+    start, end, cycle = (np.concatenate(part) for part in (starts, ends, cycles))
+    return _Strokes(start, end, cycle, period)
 
 
 _STROKE = ("travel", "area", "line_volume", "duration")
@@ -476,31 +428,17 @@ class _Taken(NamedTuple):
 
 
 class _Selection(NamedTuple):
-    """Outputs, sums and extremes that the wanted results of a cycle need."""
+    """What the wanted results need."""
 
     needed: npt.NDArray[np.bool_]
     """Whether each output is needed at all samples (outputs,)."""
     sums: npt.NDArray[np.bool_]
+    """Whether each sum is wanted of some cycle (sums,)."""
     exchange: bool
     extremes: list[_Taken]
-
-
-def _data(record: CycleRecord) -> Array:
-    """Columns of all samples."""
-    columns = [record.motion, record.load, record.speed]
-    if record.supply_pressure is not None:
-        columns.append(record.supply_pressure)
-    return np.stack(columns, axis=1)
-
-
-def _neighbours(record: CycleRecord) -> Array:
-    """Columns `NEIGHBOURS` of all samples, without the weights of the flow."""
-    count = len(record.time)
-    before, after = np.maximum(np.arange(count) - 1, 0), np.minimum(np.arange(count) + 1, count - 1)
-    weight = 0.5 * (record.time[after] - record.time[before])
-    columns = [record.motion[before], record.load[before], record.motion[after], record.load[after]]
-    columns += [weight, weight / weight.sum(), np.zeros(count), np.zeros(count)]
-    return np.stack(columns, axis=1)
+    damage: npt.NDArray[np.bool_]
+    rest: bool
+    """Whether the leakage at rest is wanted."""
 
 
 class _Weights(NamedTuple):
@@ -575,13 +513,25 @@ def turning_points(position: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
 
 
 class TimeWindows(NamedTuple):
-    """Windows of time of a cycle."""
+    """Windows of time of all cycles."""
 
     labels: tuple[str, ...]
-    rows: npt.NDArray[np.intp]
+    cycles: Rows
+    """Number of the cycle of every window."""
+    rows: Rows
     """Samples of every window (windows, samples); short windows repeat their last sample."""
     repeated: npt.NDArray[np.bool_]
     """Whether a sample only fills up its window."""
+
+    @property
+    def ranked(self) -> list[tuple[int, str]]:
+        """Cycle and name of the results of all windows, the worst sample first."""
+        words = ["", *(", next" if k == 1 else f", next {k}" for k in range(1, RANKS))]
+        return [
+            (cycle, label + word)
+            for cycle, label in zip(self.cycles.tolist(), self.labels, strict=True)
+            for word in words
+        ]
 
     def least(self, values: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
         """Samples of the `RANKS` least values of every window, in order.
@@ -602,21 +552,16 @@ class TimeWindows(NamedTuple):
         return found.reshape(*found.shape[:2], -1).transpose(0, 2, 1)
 
 
-def windows_of(record: CycleRecord, windows: int) -> TimeWindows:
-    """Windows of a record; the last sample of a closed cycle repeats its first."""
-    count = len(record.time) - (1 if record.closed else 0)
-    edges = np.linspace(0, count, min(windows, count) + 1).round().astype(int)
-    longest = int(np.diff(edges).max())
-    steps = np.arange(longest)
-    first, last = edges[:-1, None], edges[1:, None]
-    return TimeWindows(
-        tuple(f"{record.time[a]:.3g} s to {record.time[b - 1]:.3g} s" for a, b in pairwise(edges)),
-        np.minimum(first + steps, last - 1),
-        first + steps >= last,
-    )
-
-
-def _ranked(windows: TimeWindows) -> list[str]:
-    """Names of the results of all windows, the worst sample first."""
-    words = ["", *(", next" if k == 1 else f", next {k}" for k in range(1, RANKS))]
-    return [label + word for label in windows.labels for word in words]
+def windows_of(records: Sequence[CycleRecord], windows: int) -> TimeWindows:
+    """Windows of each record; the last sample of a closed cycle repeats its first."""
+    first, labels, parts = 0, [], []
+    for k, record in enumerate(records):
+        time, count = record.time, len(record.time) - (1 if record.closed else 0)
+        edges = np.linspace(0, count, min(windows, count) + 1).round().astype(int)
+        labels += [f"{time[a]:.3g} s to {time[b - 1]:.3g} s" for a, b in pairwise(edges)]
+        parts += [(k, first + a, first + b) for a, b in pairwise(edges)]
+        first += len(time)
+    cycles, starts, ends = np.array(parts).T
+    places = starts[:, None] + np.arange((ends - starts).max())
+    repeated = places >= ends[:, None]
+    return TimeWindows(tuple(labels), cycles, np.minimum(places, ends[:, None] - 1), repeated)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field, replace
+from functools import cached_property
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -15,7 +16,7 @@ from ...models import wear
 from .force_speed import ForceLimit, force_limits
 from .numbers import CYCLE
 from .results import CycleModels, Place
-from .samples import SampleResults
+from .sampling import SampleResults
 
 Trace = npt.NDArray[np.float64]
 
@@ -288,10 +289,20 @@ class DutyStudy:
     """Lengths of the linkage; None if no cycle moves it."""
     warming: tuple[Warming, ...] = ()
     """Temperatures over time, under every cycle or the mean of all; empty if they are not known."""
-    shortfalls: tuple[Shortfall, ...] = ()
-    """Checks that the cycles miss, with reasons and cures."""
     films: Mapping[str, str] = field(default_factory=dict)
     """Seals with an oil film, each with the trace of its friction, which is that of dry contact."""
+    find_shortfalls: Callable[[], Iterable[Shortfall]] = field(
+        default=tuple, repr=False, compare=False
+    )
+    """Finds the `shortfalls`; the search for cures takes seconds."""
+
+    @cached_property
+    def shortfalls(self) -> tuple[Shortfall, ...]:
+        """Checks that the cycles miss, with reasons and cures."""
+        return tuple(self.find_shortfalls())
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "shortfalls": self.shortfalls, "find_shortfalls": tuple}
 
     def to_dict(self) -> dict[str, Any]:
         """JSON data."""

@@ -1,0 +1,317 @@
+"""Results of all samples of all duty cycles of a design structure, with slopes.
+
+The samples of all cycles stand one behind the other. The model of a sample is recorded once per
+design structure and run by the virtual machine for all samples and designs together; where the
+machine is missing, NumPy runs it with a complex step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ...base.dataclass import dataclass
+from ...base.numeric import Array
+from ...base.symbolic.program import EQUAL
+from ...base.symbolic.recorded import RecordedFunction
+from ...design.cycle_record import CycleRecord
+from .numbers import SamplePlan
+from .samples import COLUMNS, NEIGHBOURS, SEAL_SUMS, SUMS, sample, summands
+
+Rows = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class SampleResults:
+    """Results of samples, without slopes."""
+
+    values: npt.NDArray[np.float64]
+    """(samples, outputs, designs)"""
+    outputs: tuple[str, ...]
+    known: Array
+    """Whether each output was computed (outputs,); others are meaningless."""
+
+    def real(self, name: str) -> npt.NDArray[np.float64]:
+        """A result at all samples (samples, designs)."""
+        return self.values[:, self.outputs.index(name)]
+
+
+class NearSamples(NamedTuple):
+    """Results with slopes at some samples."""
+
+    values: Array
+    """(samples, outputs, designs, 1 + directions)"""
+    places: Rows
+    """Place of each sample of all cycles among `values`; meaningless for samples left out."""
+
+    def at(self, outputs: Array | int, rows: Rows) -> Array:
+        """Outputs (..., designs, 1 + directions) at samples (..., designs)."""
+        picked: Array = self.values[self.places[rows], outputs, np.arange(rows.shape[-1])]
+        return picked
+
+
+class _Kind(NamedTuple):
+    """Cycles with the same model of a sample."""
+
+    linked: bool
+    """Whether the linkage gives position and lever arm."""
+    columns: tuple[str, ...]
+    extending: bool | None = None
+    """Direction of the rod; None: it differs between designs, or changes at a dead point."""
+
+
+class Part(NamedTuple):
+    """Samples with the same model."""
+
+    kind: _Kind
+    rows: Rows
+    """The samples, in order."""
+    cycles: Rows
+    """Cycles to which they belong."""
+    sizes: Rows
+    """Number of samples of each of these cycles."""
+    data: Array
+    """Columns of the samples (samples, columns)."""
+    around: Array
+    """These and `NEIGHBOURS`, for sums."""
+
+
+class Samples:
+    """The samples of all cycles, as functions of the numbers of a design.
+
+    Parameters
+    ----------
+    plan : structure of the design
+    records : records of the cycles by name
+    names : names of the numbers of a cycle, in the order of their arrays
+
+    Attributes
+    ----------
+    outputs : names of the results of a sample
+    first : number of the first sample of every cycle, and of all samples (cycles + 1,)
+    """
+
+    def __init__(
+        self, plan: SamplePlan, records: Mapping[str, CycleRecord], names: Sequence[str]
+    ) -> None:
+        self.plan, self.names = plan, tuple(names)
+        sizes = [len(record.time) for record in records.values()]
+        self.first = np.concatenate([[0], np.cumsum(sizes)])
+        self._cycle = np.repeat(np.arange(len(sizes)), sizes)
+        self._kinds = [
+            _Kind(name in plan.linked, COLUMNS if x.supply_pressure is None else WITH_SUPPLY)
+            for name, x in records.items()
+        ]
+        self._data = np.concatenate([_data(record) for record in records.values()])
+        self._around = np.concatenate([_neighbours(record) for record in records.values()])
+        self._ends = np.array([[x.motion.min(), x.motion.max()] for x in records.values()])
+        self._functions: dict[Any, RecordedFunction] = {}
+        self._parts: dict[bytes, list[Part]] = {}
+
+    @cached_property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the results of a sample, see `sample`."""
+        one = dict.fromkeys((*self.names, *COLUMNS), np.ones(1))
+        with np.errstate(all="ignore"):
+            return tuple(sample(self.plan, one, one, linked=False))
+
+    def values(
+        self, numbers: Array, parts: Sequence[Part], wanted: Array | None = None
+    ) -> SampleResults:
+        """Results of all samples.
+
+        Parameters
+        ----------
+        numbers : (cycles, numbers, designs)
+        parts : the samples, see `parts`
+        wanted : whether each output is wanted (outputs,); None: all
+        """
+        if wanted is None:
+            wanted = np.ones(len(self.outputs), dtype=bool)
+        values = np.empty((self.first[-1], len(wanted), numbers.shape[2]))
+        places = np.flatnonzero(wanted)
+        for part in parts:
+            found = self._run(_results, part, numbers[:, :, :, None], wanted)
+            values[part.rows[:, None], places] = found[..., 0].transpose(1, 2, 0)
+        return SampleResults(values, self.outputs, wanted)
+
+    def near(self, numbers: Array, track: SampleResults, rows: Sequence[Rows]) -> NearSamples:
+        """The samples that are in some rows, with slopes.
+
+        Parameters
+        ----------
+        numbers : with slopes (cycles, numbers, designs, 1 + directions)
+        track : results of all samples
+        rows : samples
+        """
+        if numbers.shape[3] == 1:
+            return NearSamples(track.values[..., None], np.arange(len(self._cycle)))
+        marked = np.zeros(len(self._cycle), dtype=bool)
+        for some in rows:
+            marked[some] = True
+        known, places = np.flatnonzero(track.known), np.cumsum(marked) - 1
+        values = np.empty((places[-1] + 1, len(track.known), *numbers.shape[2:]))
+        for part in self._by_kind(np.flatnonzero(marked), whole=False):
+            found = self._run(_results, part, numbers, track.known)
+            values[places[part.rows][:, None], known] = found.transpose(1, 2, 0, 3)
+        return NearSamples(values, places)
+
+    def sums(
+        self,
+        numbers: Array,
+        parts: Sequence[Part],
+        wanted: Array,
+        weights: Array | None = None,
+    ) -> Array:
+        """Sums over every cycle with slopes (sums, cycles, designs, 1 + directions).
+
+        The sums are `SUMS` and then `SEAL_SUMS` of each seal.
+
+        Parameters
+        ----------
+        numbers : with slopes (cycles, numbers, designs, 1 + directions)
+        parts : the samples, see `parts`
+        wanted : whether each sum is wanted (sums,); others are 0
+        weights : of the flow in its ripple volume and in its peak (2, samples, designs)
+        """
+        count = len(SUMS) + len(SEAL_SUMS) * len(self.plan.rings)
+        sums = np.zeros((count, len(self._kinds), *numbers.shape[2:]))
+        places = np.flatnonzero(wanted)[:, None]
+        for part in parts:
+            found = self._run(summands, part, numbers, wanted, weights)
+            sums[places, part.cycles] += found.transpose(2, 1, 0, 3)
+        return sums
+
+    def _run(
+        self,
+        function: Callable[..., list[Array]],
+        part: Part,
+        numbers: Array,
+        wanted: Array,
+        weights: Array | None = None,
+    ) -> Array:
+        """Results at the samples of a part (designs, samples, results, 1 + directions).
+
+        Of the function `summands`, the sums over each cycle (designs, cycles, ...).
+        """
+        designs, groups = numbers.shape[2], len(part.cycles) * numbers.shape[2]
+        summed = function is summands
+        data = part.around if summed else part.data
+        own = data if designs == 1 else np.broadcast_to(data, (designs, *data.shape))
+        if weights is not None:
+            own = np.array(own).reshape(designs, *data.shape)
+            own[:, :, -2:] = weights[:, part.rows].transpose(2, 1, 0)
+        recorded = self._recorded(function, part.kind, wanted)
+        inputs = numbers[part.cycles].transpose(2, 0, 1, 3).reshape(groups, *numbers.shape[1::2])
+        group = EQUAL
+        if len(part.cycles) > 1:
+            group = np.repeat(np.arange(groups, dtype=np.int32), np.tile(part.sizes, designs))
+        found = recorded.duals(
+            inputs[:, :, 0],
+            own.reshape(-1, data.shape[1]),
+            inputs[:, :, 1:],
+            groups if summed else None,
+            group,
+        )
+        return found.reshape(designs, -1, *found.shape[1:])
+
+    def _recorded(
+        self, function: Callable[..., list[Array]], kind: _Kind, wanted: Array
+    ) -> RecordedFunction:
+        """The wanted results of a function of samples, as a recorded function."""
+        key = (function, kind, wanted.tobytes())
+        if key not in self._functions:
+            columns = (*kind.columns, *NEIGHBOURS) if function is summands else kind.columns
+            count, rows = len(self.names), np.flatnonzero(wanted).tolist()
+
+            def some(points: Array) -> Array:
+                u = dict(zip(self.names, points[:count], strict=True))
+                s = dict(zip(columns, points[count:], strict=True))
+                every = function(self.plan, u, s, linked=kind.linked, extending=kind.extending)
+                first = points[0]
+                xp: Any = np if type(first) is np.ndarray else first.__array_namespace__()
+                return xp.stack(
+                    [xp.broadcast_to(xp.asarray(every[row]), first.shape) for row in rows]
+                )
+
+            labels = [*self.names, *(f"={name}" for name in columns)]
+            self._functions[key] = RecordedFunction(
+                some, labels, np.ones(len(labels)), shared=count
+            )
+        return self._functions[key]
+
+    def parts(self, numbers: Array) -> list[Part]:
+        """All samples by model at numbers (cycles, numbers, designs).
+
+        A program for one direction of the rod is shorter than one that selects by direction.
+        """
+        sides = self._sides(numbers)
+        key = sides.tobytes()
+        if key not in self._parts:
+            ahead = sides[self._cycle] * self._data[:, COLUMNS.index("rate")] >= 0
+            known = sides[self._cycle] != 0
+            self._parts[key] = [
+                part._replace(kind=part.kind._replace(extending=extending))
+                for extending, rows in (
+                    (True, known & ahead), (False, known & ~ahead), (None, ~known)
+                )
+                for part in self._by_kind(np.flatnonzero(rows), whole=True)
+            ]  # fmt: skip
+        return self._parts[key]
+
+    def _by_kind(self, rows: Rows, *, whole: bool) -> list[Part]:
+        """Samples by the kind of their cycles; of parts that are not `whole` there are no sums."""
+        parts = []
+        for kind in dict.fromkeys(self._kinds):
+            own = rows
+            if len(set(self._kinds)) > 1:
+                own = rows[np.array([x == kind for x in self._kinds])[self._cycle[rows]]]
+            sizes = np.bincount(self._cycle[own], minlength=len(self._kinds))
+            cycles, data = np.flatnonzero(sizes), self._data[own, : len(kind.columns)]
+            if len(own):
+                around = np.concatenate([data, self._around[own]], axis=1) if whole else data
+                parts.append(Part(kind, own, cycles, sizes[cycles], data, around))
+        return parts
+
+    def _sides(self, numbers: Array) -> npt.NDArray[np.int8]:
+        """Sign of the lever arm of each cycle (cycles,); 0 if it changes or differs by design."""
+        sides = np.sign(numbers[:, self.names.index("arm")])
+        linked = np.array([kind.linked for kind in self._kinds])
+        if linked.any():  # the sign of the sine of the angle between the radii
+            offset = numbers[linked, self.names.index("angle_offset")]
+            turned = (self._ends[linked][:, :, None] + offset[:, None]) / np.pi
+            first, last = np.floor(turned.transpose(1, 0, 2))
+            sides[linked] = np.where(first == last, 1.0 - 2.0 * (first % 2), 0.0)
+        same = (sides == sides[:, :1]).all(axis=1)
+        return np.where(same, sides[:, 0], 0.0).astype(np.int8)
+
+
+WITH_SUPPLY = (*COLUMNS, "supply")
+"""Columns of a cycle that states the supply pressure of every sample."""
+
+
+def _results(*arguments: Any, **stated: Any) -> list[Array]:
+    """All results of `sample`, in order."""
+    return [*sample(*arguments, **stated).values()]
+
+
+def _data(record: CycleRecord) -> Array:
+    """Columns `WITH_SUPPLY` of all samples; the supply pressure may be missing."""
+    supply = record.supply_pressure
+    if supply is None:
+        supply = np.full(len(record.time), np.nan)
+    return np.stack([record.motion, record.load, record.speed, supply], axis=1)
+
+
+def _neighbours(record: CycleRecord) -> Array:
+    """Columns `NEIGHBOURS` of all samples, without the weights of the flow."""
+    count = len(record.time)
+    before, after = np.maximum(np.arange(count) - 1, 0), np.minimum(np.arange(count) + 1, count - 1)
+    weight = 0.5 * (record.time[after] - record.time[before])
+    columns = [record.motion[before], record.load[before], record.motion[after], record.load[after]]
+    columns += [weight, weight / weight.sum(), np.zeros(count), np.zeros(count)]
+    return np.stack(columns, axis=1)
