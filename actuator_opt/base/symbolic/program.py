@@ -136,25 +136,25 @@ class Program:
         shared : the first inputs (groups, inputs), each for some successive points
         own : the other inputs of every point, (points, inputs)
         seeds : change of the first inputs in every direction (groups, inputs, directions), each for
-            some successive points; empty: values only
+            some successive points; empty: values only. A multiple of `WIDTH` directions needs no
+            copy
         rows : number of rows, each the sum over some successive points; None: one for every point
         group : the group of every point (points,), int32, if groups differ in size
         """
         size = (len(own) if rows is None else rows, len(self.outputs))
         shared, own = (np.ascontiguousarray(part, dtype=float) for part in (shared, own))
         inputs, directions = seeds.shape[1:]
-        if not directions:
-            found = np.empty((*size, 1))
-            runnable = self._runnable(None)
-            COMPILED.run(runnable, shared, shared.shape[1], own, seeds, inputs, 0, group, found)
-            return found
-        active = np.flatnonzero(seeds.any(axis=(0, 1)))  # other directions change nothing
-        count, width = len(active), -(-len(active) // WIDTH) * WIDTH
-        padded = np.zeros((len(seeds), inputs, width))
-        padded[:, :, :count] = seeds if count == directions else seeds[:, :, active]
+        active = np.arange(directions)
+        if directions % WIDTH:
+            active = np.flatnonzero(seeds.any(axis=(0, 1)))  # other directions change nothing
+            padded = np.zeros((len(seeds), inputs, -(-len(active) // WIDTH) * WIDTH))
+            padded[:, :, : len(active)] = seeds[:, :, active]
+            seeds = padded
+        seeds = np.ascontiguousarray(seeds, dtype=float)
+        count, width = len(active), seeds.shape[2]
         found = np.empty((*size, 1 + width))
-        runnable = self._runnable(padded.any(axis=(0, 2)) if count else None)
-        COMPILED.run(runnable, shared, shared.shape[1], own, padded, inputs, width, group, found)
+        runnable = self._runnable(seeds.any(axis=(0, 2)) if width else None)
+        COMPILED.run(runnable, shared, shared.shape[1], own, seeds, inputs, width, group, found)
         if count == directions:
             return found[:, :, : 1 + count]
         results = np.zeros((*size, 1 + directions))

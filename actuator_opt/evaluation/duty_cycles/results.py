@@ -33,7 +33,7 @@ from ..values import Values
 from .fatigue import CycleFatigue
 from .numbers import CYCLE, SamplePlan
 from .samples import SEAL_SUMS, SUMS, leakage_at_rest
-from .sampling import NearSamples, Rows, SampleResults, Samples
+from .sampling import Inputs, NearSamples, Rows, SampleResults, Samples
 
 WINDOWS = 8
 """Windows of time of all cycles together (our choice). The extremes in each window are separate
@@ -208,7 +208,7 @@ class CycleModels:
     def tracks(self, values: Array) -> dict[str, SampleResults]:
         """Results of all samples of every cycle, at numbers (numbers, designs)."""
         own = values[self._rows]
-        track = self._samples.values(own, self._samples.parts(own))
+        track = self._samples.values(Inputs(own[..., None]), self._samples.parts(own))
         return {
             name: SampleResults(track.values[a:b], track.outputs, track.known)
             for name, (a, b) in zip(self.records, pairwise(self._samples.first), strict=True)
@@ -256,21 +256,21 @@ class CycleModels:
     def _results(self, numbers: Array, selection: _Selection) -> Array:
         """Results of `duals` of designs that are computed together."""
         own = numbers[self._rows]  # (cycles, numbers, designs, 1 + directions)
-        parts = self._samples.parts(own[..., 0])
-        track = self._samples.values(own[..., 0], parts, selection.needed)
+        inputs, parts = Inputs(own), self._samples.parts(own[..., 0])
+        track = self._samples.values(inputs, parts, selection.needed)
         picks = [taken.rows(track) for taken in selection.extremes]
         counted = self._fatigue.counted(track) if selection.damage.any() else None
         rows = [*picks, *(counted.rows if counted else ())]
         if selection.exchange:
             rows += [self._strokes.start, self._strokes.end]
-        near = self._samples.near(own, track, rows)
+        near = self._samples.near(inputs, track, rows)
         shape = numbers.shape[1:]
         blocks = []
         if selection.sums.any():
             weights = None
             if selection.sums[FLOW_SUMS].any():
                 weights = self._weights(track.real("flow"))
-            blocks.append(self._samples.sums(own, parts, selection.sums, weights))
+            blocks.append(self._samples.sums(inputs, parts, selection.sums, weights))
         else:
             blocks.append(np.zeros((self._sizes[0], *shape)))
         exchanged = np.zeros((self._sizes[1], *shape))
@@ -424,7 +424,8 @@ class _Taken(NamedTuple):
         """Samples of the worst values (extremes that are taken, windows and ranks, designs)."""
         if not len(self.outputs):
             return np.empty((0, 0, 0), dtype=np.intp)
-        return self.windows.least(track.values[:, self.outputs] * self.signs[:, None])
+        known = track.values[:, track.column(self.outputs)]
+        return self.windows.least(known * self.signs[:, None])
 
 
 class _Selection(NamedTuple):

@@ -16,11 +16,11 @@ import numpy.typing as npt
 
 from ...base.dataclass import dataclass
 from ...base.numeric import Array
-from ...base.symbolic.program import EQUAL
+from ...base.symbolic.program import EQUAL, WIDTH
 from ...base.symbolic.recorded import RecordedFunction
 from ...design.cycle_record import CycleRecord
 from .numbers import SamplePlan
-from .samples import COLUMNS, NEIGHBOURS, SEAL_SUMS, SUMS, sample, summands
+from .samples import COLUMNS, NEIGHBOURS, sample, summands
 
 Rows = npt.NDArray[np.intp]
 
@@ -30,28 +30,76 @@ class SampleResults:
     """Results of samples, without slopes."""
 
     values: npt.NDArray[np.float64]
-    """(samples, outputs, designs)"""
+    """(samples, known outputs, designs)"""
     outputs: tuple[str, ...]
     known: Array
-    """Whether each output was computed (outputs,); others are meaningless."""
+    """Whether each output was computed (outputs,)."""
+
+    def column(self, outputs: Array | int) -> Array:
+        """Places of outputs among the known."""
+        return (np.cumsum(self.known) - 1)[outputs]
 
     def real(self, name: str) -> npt.NDArray[np.float64]:
-        """A result at all samples (samples, designs)."""
-        return self.values[:, self.outputs.index(name)]
+        """A known result at all samples (samples, designs)."""
+        return self.values[:, self.column(self.outputs.index(name))]
 
 
 class NearSamples(NamedTuple):
     """Results with slopes at some samples."""
 
     values: Array
-    """(samples, outputs, designs, 1 + directions)"""
+    """(samples, known outputs, designs, 1 + directions)"""
     places: Rows
     """Place of each sample of all cycles among `values`; meaningless for samples left out."""
+    track: SampleResults
 
     def at(self, outputs: Array | int, rows: Rows) -> Array:
-        """Outputs (..., designs, 1 + directions) at samples (..., designs)."""
-        picked: Array = self.values[self.places[rows], outputs, np.arange(rows.shape[-1])]
+        """Known outputs (..., designs, 1 + directions) at samples (..., designs)."""
+        column = self.track.column(outputs)
+        picked: Array = self.values[self.places[rows], column, np.arange(rows.shape[-1])]
         return picked
+
+
+class Inputs:
+    """Numbers of every cycle of some designs with slopes, as the machine takes them.
+
+    Parameters
+    ----------
+    numbers : (cycles, numbers, designs, 1 + directions)
+
+    Attributes
+    ----------
+    values : (designs, cycles, numbers)
+    seeds : slopes in the active directions, in which some number changes, filled up to a multiple
+        of `WIDTH` (designs, cycles, numbers, width)
+    shape : designs, and 1 + directions
+    """
+
+    def __init__(self, numbers: Array) -> None:
+        self.shape = numbers.shape[2:]
+        self.values = np.ascontiguousarray(numbers[..., 0].transpose(2, 0, 1))
+        slopes = numbers[..., 1:].transpose(2, 0, 1, 3)
+        self._active = np.flatnonzero(slopes.any(axis=(0, 1, 2)))
+        self._count = len(self._active)
+        self.seeds = np.zeros((*self.values.shape, -(-self._count // WIDTH) * WIDTH))
+        self.seeds[..., : self._count] = slopes[..., self._active]
+
+    def of(self, cycles: Rows) -> tuple[Array, Array]:
+        """Values and seeds of some cycles, those of a design together."""
+        values, seeds = self.values, self.seeds
+        if len(cycles) < values.shape[1]:
+            values, seeds = values[:, cycles], seeds[:, cycles]
+        groups = values.shape[0] * values.shape[1]
+        return values.reshape(groups, -1), seeds.reshape(groups, *seeds.shape[2:])
+
+    def spread(self, found: Array) -> Array:
+        """Results with slopes in all directions (..., 1 + directions)."""
+        spread = np.zeros((*found.shape[:-1], self.shape[1]))
+        spread[..., 0], spread[..., 1 + self._active] = (
+            found[..., 0],
+            found[..., 1 : 1 + self._count],
+        )
+        return spread
 
 
 class _Kind(NamedTuple):
@@ -120,49 +168,48 @@ class Samples:
             return tuple(sample(self.plan, one, one, linked=False))
 
     def values(
-        self, numbers: Array, parts: Sequence[Part], wanted: Array | None = None
+        self, inputs: Inputs, parts: Sequence[Part], wanted: Array | None = None
     ) -> SampleResults:
         """Results of all samples.
 
         Parameters
         ----------
-        numbers : (cycles, numbers, designs)
+        inputs : the numbers
         parts : the samples, see `parts`
         wanted : whether each output is wanted (outputs,); None: all
         """
         if wanted is None:
             wanted = np.ones(len(self.outputs), dtype=bool)
-        values = np.empty((self.first[-1], len(wanted), numbers.shape[2]))
-        places = np.flatnonzero(wanted)
+        values = np.empty((self.first[-1], wanted.sum(), inputs.shape[0]))
         for part in parts:
-            found = self._run(_results, part, numbers[:, :, :, None], wanted)
-            values[part.rows[:, None], places] = found[..., 0].transpose(1, 2, 0)
+            found = self._run(_results, part, inputs, wanted, sloped=False)
+            values[part.rows] = found[..., 0].transpose(1, 2, 0)
         return SampleResults(values, self.outputs, wanted)
 
-    def near(self, numbers: Array, track: SampleResults, rows: Sequence[Rows]) -> NearSamples:
+    def near(self, inputs: Inputs, track: SampleResults, rows: Sequence[Rows]) -> NearSamples:
         """The samples that are in some rows, with slopes.
 
         Parameters
         ----------
-        numbers : with slopes (cycles, numbers, designs, 1 + directions)
+        inputs : the numbers
         track : results of all samples
         rows : samples
         """
-        if numbers.shape[3] == 1:
-            return NearSamples(track.values[..., None], np.arange(len(self._cycle)))
+        if inputs.shape[1] == 1:
+            return NearSamples(track.values[..., None], np.arange(len(self._cycle)), track)
         marked = np.zeros(len(self._cycle), dtype=bool)
         for some in rows:
             marked[some] = True
-        known, places = np.flatnonzero(track.known), np.cumsum(marked) - 1
-        values = np.empty((places[-1] + 1, len(track.known), *numbers.shape[2:]))
+        places = np.cumsum(marked) - 1
+        values = np.empty((places[-1] + 1, track.known.sum(), *inputs.shape))
         for part in self._by_kind(np.flatnonzero(marked), whole=False):
-            found = self._run(_results, part, numbers, track.known)
-            values[places[part.rows][:, None], known] = found.transpose(1, 2, 0, 3)
-        return NearSamples(values, places)
+            found = self._run(_results, part, inputs, track.known)
+            values[places[part.rows]] = inputs.spread(found.transpose(1, 2, 0, 3))
+        return NearSamples(values, places, track)
 
     def sums(
         self,
-        numbers: Array,
+        inputs: Inputs,
         parts: Sequence[Part],
         wanted: Array,
         weights: Array | None = None,
@@ -173,32 +220,33 @@ class Samples:
 
         Parameters
         ----------
-        numbers : with slopes (cycles, numbers, designs, 1 + directions)
+        inputs : the numbers
         parts : the samples, see `parts`
         wanted : whether each sum is wanted (sums,); others are 0
         weights : of the flow in its ripple volume and in its peak (2, samples, designs)
         """
-        count = len(SUMS) + len(SEAL_SUMS) * len(self.plan.rings)
-        sums = np.zeros((count, len(self._kinds), *numbers.shape[2:]))
+        sums = np.zeros((len(wanted), len(self._kinds), *inputs.shape))
         places = np.flatnonzero(wanted)[:, None]
         for part in parts:
-            found = self._run(summands, part, numbers, wanted, weights)
-            sums[places, part.cycles] += found.transpose(2, 1, 0, 3)
+            found = self._run(summands, part, inputs, wanted, weights)
+            sums[places, part.cycles] += inputs.spread(found.transpose(2, 1, 0, 3))
         return sums
 
     def _run(
         self,
         function: Callable[..., list[Array]],
         part: Part,
-        numbers: Array,
+        inputs: Inputs,
         wanted: Array,
         weights: Array | None = None,
+        *,
+        sloped: bool = True,
     ) -> Array:
-        """Results at the samples of a part (designs, samples, results, 1 + directions).
+        """Results at the samples of a part (designs, samples, results, 1 + active directions).
 
         Of the function `summands`, the sums over each cycle (designs, cycles, ...).
         """
-        designs, groups = numbers.shape[2], len(part.cycles) * numbers.shape[2]
+        designs, groups = inputs.shape[0], len(part.cycles) * inputs.shape[0]
         summed = function is summands
         data = part.around if summed else part.data
         own = data if designs == 1 else np.broadcast_to(data, (designs, *data.shape))
@@ -206,14 +254,14 @@ class Samples:
             own = np.array(own).reshape(designs, *data.shape)
             own[:, :, -2:] = weights[:, part.rows].transpose(2, 1, 0)
         recorded = self._recorded(function, part.kind, wanted)
-        inputs = numbers[part.cycles].transpose(2, 0, 1, 3).reshape(groups, *numbers.shape[1::2])
+        values, seeds = inputs.of(part.cycles)
         group = EQUAL
         if len(part.cycles) > 1:
             group = np.repeat(np.arange(groups, dtype=np.int32), np.tile(part.sizes, designs))
         found = recorded.duals(
-            inputs[:, :, 0],
+            values,
             own.reshape(-1, data.shape[1]),
-            inputs[:, :, 1:],
+            seeds if sloped else seeds[:, :, :0],
             groups if summed else None,
             group,
         )
