@@ -38,6 +38,10 @@ OTHER_LINES = 2000
 CLOSURE = 0.01
 """Largest difference of the ends of a closed cycle, as a share of the column's range (our
 choice)."""
+POWER_BETWEEN = 0.1
+"""Excess of the power between samples over that at the samples that is reported (our choice)."""
+BETWEEN = 8
+"""Points of each time step at which the power is compared."""
 OVERSHOOT = 0.01
 """Overshoot of the spline beyond the samples that is reported, as a share of the range (our
 choice)."""
@@ -557,6 +561,8 @@ def _doubts(
     for name in (motion, load):
         yield from _overshoot(name, time, values[name], closed=closed)
         yield from _spikes(name, time, values[name], lines)
+    if not any(name in values for name in _SPEEDS):
+        yield from _power_between(time, values[motion], values[load], closed=closed)
 
 
 def _turns(motion: Array) -> list[int]:
@@ -602,6 +608,29 @@ def _overshoot(name: str, time: Array, values: Array, *, closed: bool) -> Iterat
             yield (
                 f"between samples, {name} reaches {_text(name, float(end))}, beyond the samples "
                 f"({_text(name, float(sample))}): sample more finely"
+            )
+
+
+def _power_between(time: Array, motion: Array, load: Array, *, closed: bool) -> Iterator[str]:
+    """A sentence if the largest power by the splines exceeds that of all samples by a tenth."""
+    with np.errstate(all="ignore"):
+        try:
+            moved, loaded = (spline(time, values, closed=closed) for values in (motion, load))
+        except (ValueError, np.linalg.LinAlgError):
+            return
+        steps = np.diff(time)[:, None] * np.linspace(0, 1, BETWEEN, endpoint=False)
+        grid = (time[:-1, None] + steps).ravel()
+        power = moved(grid, 1) * loaded(grid)
+        at_samples = power[::BETWEEN]
+    if not np.isfinite(power).all():
+        return
+    for word, sign in (("largest given", 1.0), ("largest taken", -1.0)):
+        peak, sample = (float(np.max(sign * values)) for values in (power, at_samples))
+        if sample > 0 and peak > (1 + POWER_BETWEEN) * sample:
+            yield (
+                f"between samples, the {word} power of motion is {100 * (peak / sample - 1):.0f} % "
+                "above that of all samples: smooth the file if this is noise; else state samples, "
+                "so that points of the splines count"
             )
 
 

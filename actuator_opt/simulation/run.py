@@ -28,7 +28,7 @@ from .assemble import assemble
 from .basis import basis
 from .components import motion
 from .components.circuit import Circuit
-from .duty_cycle import compare, plant_of
+from .duty_cycle import compare, plant_of, spool_lag
 from .integrate import Method, Stuck, Trajectory, integrate
 from .linear import CAUSES, UNHELD, Tuned, tune
 from .result import Second, SignalLabel, Simulation
@@ -249,9 +249,11 @@ def _cycle(circuit: Circuit) -> Iterator[str]:
         f"left out, and only rod and piston move ({mass}); the gain and its margins are those with "
         "the load"
     )
+    assert circuit.plant.valve is not None
+    lag = f"{1e3 * spool_lag(circuit.plant.valve):.2g} ms"
     yield (
         f"the valve opening that {name} needs by the quasi-static model is added to the signal of "
-        "the controller; control.feed_forward replaces it"
+        f"the controller, ahead by the lag of the spool ({lag}); control.feed_forward replaces it"
     )
 
 

@@ -231,7 +231,7 @@ class CycleModels:
         return needs
 
     def _selection(self, wanted: Array | None) -> _Selection:
-        """What the wanted results (places,) need; None: all. Cached."""
+        """Outputs, sums and samples for the wanted results (places,); None: all. Cached."""
         if wanted is None:
             wanted = np.ones(len(self.places), dtype=bool)
         key = wanted.tobytes()
@@ -429,7 +429,7 @@ class _Taken(NamedTuple):
 
 
 class _Selection(NamedTuple):
-    """What the wanted results need."""
+    """Outputs, sums and samples that the wanted results need."""
 
     needed: npt.NDArray[np.bool_]
     """Whether each output is needed at all samples (outputs,)."""
