@@ -87,7 +87,7 @@ def assemble(
         omit sticking friction
     free : names of values that become variables; `Circuit.freed` has those that the circuit uses
     """
-    plant = plant_of(scenario, plant, loaded=linear)
+    plant = plant_of(scenario, plant)
     circuit = Circuit(
         scenario=scenario,
         plant=plant,

@@ -1,8 +1,8 @@
 """Duty cycles of a design as scenarios, with their quasi-static results beside the simulated ones.
 
-The position of the cycle is the reference of the position loop, its force the load of the rod. As
-this force contains the inertia of the load, only the mass of rod and piston moves in a simulation;
-the gain is tuned, and the margins are computed, with the load. The opening of the valve that the
+The position of the cycle is the reference of the position loop, its force the load of the rod. This
+force contains the inertia of the load along the reference. A simulation subtracts this inertia and
+moves the load with the rod, so that it resists any other motion. The opening of the valve that the
 quasi-static model needs is added to the signal of the controller, ahead by the lag of the spool, so
 that the position lags less. Reference and quasi-static results count the same samples: those of the
 file and, between them, of its splines.
@@ -21,9 +21,9 @@ from ..base.dataclass import dataclass
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import Array
 from ..base.quantities import INPUTS, Quantity
-from ..design.cycle_record import CycleRecord
+from ..design.cycle_record import CycleRecord, spline
 from ..design.duty import DutyCycle
-from ..design.model import Design, Load
+from ..design.model import Design
 from ..design.paths import get
 from ..design.scenario.kinds import Records
 from ..design.scenario.model import (
@@ -61,24 +61,32 @@ def cycle_of(scenario: Scenario, design: Design) -> DutyCycle | None:
     return next((cycle for cycle in cycles if cycle.name == scenario.cycle), None)
 
 
-def plant_of(scenario: Scenario, actuator: Plant, *, loaded: bool) -> Plant:
-    """The plant of a scenario: with the supply pressure of its duty cycle, if it has one.
-
-    Without `loaded`, mass and inertia of the load are zero: the force of the cycle contains their
-    inertia.
-    """
+def plant_of(scenario: Scenario, actuator: Plant) -> Plant:
+    """The plant of a scenario: with the supply pressure of its duty cycle, if it has one."""
     cycle = cycle_of(scenario, actuator.design)
     if cycle is None:
         return actuator
     assert actuator.design.duty is not None
     level = get(actuator.design, actuator.design.duty.pressure_path(cycle))
     assert isinstance(level, float)
-    actuator = replace(actuator, supply_pressure=level)
-    if loaded:
-        return actuator
-    load = actuator.design.load
-    design = actuator.design.model_copy(update={"load": Load()})
-    return replace(actuator, design=design, mass=actuator.mass - load.mass)
+    return replace(actuator, supply_pressure=level)
+
+
+def inertia_force(actuator: Plant, cycle: CycleStudy) -> Array:
+    """Force of the load's inertia on the rod along a cycle [N].
+
+    F = m a + (J/h^2) a - (J h'/h^4) v^2, with the load's mass m, the lever arm h, and the joint's
+    inertia J as the actuator feels it (`linkage.reflected_inertia`).
+    """
+    position = cycle.traces["position"]
+    curve = spline(cycle.time, position, closed=cycle.record.closed)
+    speed, acceleration = curve(cycle.time, 1), curve(cycle.time, 2)
+    force = actuator.design.load.mass * acceleration
+    joint = actuator.joint(position)
+    if joint is not None and actuator.design.load.inertia:
+        felt = joint[1]
+        force = force + felt.mass * acceleration + felt.velocity_factor * speed**2
+    return np.asarray(force)
 
 
 def with_cycle(scenario: Scenario, subject: PreparedDesign) -> tuple[Scenario, Records]:
@@ -97,7 +105,7 @@ def with_cycle(scenario: Scenario, subject: PreparedDesign) -> tuple[Scenario, R
     cycle = cycle_of(scenario, subject.design)
     if cycle is None:
         return scenario, {}
-    actuator = plant_of(scenario, plant(subject), loaded=True)
+    actuator = plant_of(scenario, plant(subject))
     finer = _resampled(cycle, subject)
     record, position = finer.record, finer.traces["position"]
     _require_positions(cycle, record, position, actuator.stroke)
@@ -107,7 +115,7 @@ def with_cycle(scenario: Scenario, subject: PreparedDesign) -> tuple[Scenario, R
     signal = _signal(actuator.valve, finer.traces)
     columns = {
         "position": position - position[0],
-        "force": finer.traces["force"],
+        "force": finer.traces["force"] - inertia_force(actuator, finer),
         "valve signal": np.interp(own + spool_lag(actuator.valve), own, signal, period=period),
     }
     label = getattr(cycle.file, "label", str(cycle.file))
@@ -262,6 +270,10 @@ class CycleComparison:
     """Samples that the quasi-static results count."""
     stated: int
     """Samples of the file among them."""
+    force: float
+    """Largest force of the cycle in either direction [N]."""
+    inertia: float
+    """Largest force of the load's inertia along the reference [N]."""
 
     @property
     def difference(self) -> float:
@@ -293,6 +305,13 @@ class CycleComparison:
             yield (
                 f"these quasi-static results count {self.samples} samples of the splines that the "
                 f"simulation follows; metrics and requirements count the {self.stated} of the file"
+            )
+        if self.inertia > self.force:
+            inertia, force = (INPUTS["force"].text(x, 3) for x in (self.inertia, self.force))
+            yield (
+                f"the inertia of the load along {self.cycle} reaches {inertia}, the force of the "
+                f"cycle only {force}: the motion is noisy, or its force does not contain this "
+                "load: smooth the file, or lower load.mass"
             )
         if self.position_error_max > LAG * self.travel:
             share = 100 * self.position_error_max / self.travel
@@ -363,7 +382,7 @@ def compare(
     period = float(static.time[-1] - static.time[0])
     whole = floor(scenario.duration / period * (1 + 1e-9)) if cycle.closed else 1
     window = _Window(time, (whole - 1) * period, whole * period)
-    supply = plant_of(scenario, actuator, loaded=True).supply_pressure
+    supply = plant_of(scenario, actuator).supply_pressure
     energy = window.integral(supply * signals["flow_supply"])
     change = None
     if whole > 1:
@@ -386,6 +405,8 @@ def compare(
             for name in ("pressure_a", "pressure_b")
         },
         samples=len(static.time),
+        force=float(np.max(np.abs(static.traces["force"]))),
+        inertia=float(np.max(np.abs(inertia_force(actuator, static)))),
         stated=len(subject.design.duty.record(cycle).time),
     )
 
@@ -418,7 +439,9 @@ def _rows(
 ) -> Iterator[ComparedResult]:
     """Results of both models."""
     traces, energies = static.traces, static.energies
-    power = signals["load_force"] * signals["speed"]
+    own = static.time - static.time[0]
+    force = np.interp(window.time % own[-1], own, traces["force"])
+    power = force * signals["speed"]
     pressures = [window.of(signals[f"pressure_{chamber}"]) for chamber in "ab"]
     known = [traces["pressure_a"], traces["pressure_b"]]
     simulated = {

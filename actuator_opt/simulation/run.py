@@ -110,7 +110,7 @@ def run(
     The other parameters are as in `simulate`.
     """
     begin = perf_counter() if begin is None else begin
-    actuator = plant_of(scenario, actuator, loaded=True)
+    actuator = plant_of(scenario, actuator)
     circuit = assemble(scenario, actuator, records, None if tuned is None else tuned.gains)
     compiled = circuit.system.compiled()
     step = scenario.sample_time or scenario.duration / SAMPLES
@@ -239,15 +239,14 @@ def _controller_notes(tuned: Tuned | None) -> Iterator[str]:
 
 
 def _cycle(circuit: Circuit) -> Iterator[str]:
-    """A note on what a duty cycle puts in place of the load's mass, and on its feed-forward."""
+    """Notes on the inertia of the load in a duty cycle, and on its feed-forward."""
     name = circuit.scenario.cycle
     if name is None:
         return
-    mass = INPUTS["load_mass"].text(circuit.plant.mass, 3)
     yield (
-        f"the force of {name} contains the inertia of the load: load.mass and load.inertia are "
-        f"left out, and only rod and piston move ({mass}); the gain and its margins are those with "
-        "the load"
+        f"the force of {name} contains the inertia of the load: it is subtracted along the "
+        "reference, and load.mass and load.inertia move with the rod, so that they resist any "
+        "other motion"
     )
     assert circuit.plant.valve is not None
     lag = f"{1e3 * spool_lag(circuit.plant.valve):.2g} ms"

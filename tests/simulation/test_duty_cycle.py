@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from cli_runner import run
 from duty_case import DESIGNS, GAIT, knee, text, wave
+from scipy.interpolate import CubicSpline
 
 import actuator_opt as ao
 from actuator_opt.design.scenario.model import Scenario
@@ -18,8 +19,7 @@ from actuator_opt.pages.simulation import page
 from actuator_opt.pages.simulation_figures import strips
 from actuator_opt.rendering.blocks import Table
 from actuator_opt.simulation import simulate
-from actuator_opt.simulation.duty_cycle import AGREEMENT, plant_of, with_cycle
-from actuator_opt.simulation.linear import tune
+from actuator_opt.simulation.duty_cycle import AGREEMENT, plant_of, spool_lag, with_cycle
 from actuator_opt.studies.plant import plant
 
 AREA_A, AREA_B = pi / 4 * 0.023**2, pi / 4 * (0.023**2 - 0.013**2)
@@ -37,7 +37,7 @@ def _walking() -> ao.Actuator:
 
 def test_the_reference_is_the_position_of_the_linkage_in_every_period():
     """By the law of cosines from the file's angles; the force is the torque by the lever arm."""
-    subject = _walking().subject()
+    subject = knee(load__mass="0 kg").subject()
     period = subject.design.duty.record(subject.design.duty.cycles[0]).duration
     scene, records = with_cycle(scenario(2.5 * period), subject)
     time, x = records[str(GAIT), "position of walk"]
@@ -60,12 +60,15 @@ def test_the_reference_is_the_position_of_the_linkage_in_every_period():
 
 
 def test_the_feed_forward_is_the_opening_of_the_quasi_static_model():
-    """Its sign is that of the speed; a stated one is kept."""
+    """Its sign is that of the speed, ahead by the lag of the spool; a stated one is kept."""
     subject = _walking().subject()
     scene, records = with_cycle(scenario(1.1), subject)
     time, x = records[str(GAIT), "position of walk"]
     signal = records[str(GAIT), "valve signal of walk"][1]
     speed = np.gradient(x, time)
+    lag = spool_lag(plant(subject).valve)
+    assert lag == pytest.approx(2 * 0.7 / (2 * pi * 120))
+    speed = np.interp(time + lag, time, speed, period=time[-1])
     moving = np.abs(speed) > 0.02
     assert np.array_equal(np.sign(signal[moving]), np.sign(speed[moving]))
     largest = ao.evaluate(_walking()).metrics["duty_opening"].value
@@ -76,23 +79,36 @@ def test_the_feed_forward_is_the_opening_of_the_quasi_static_model():
     assert [part.shape for part in kept.control.feed_forward] == ["constant"]
 
 
-def test_only_rod_and_piston_move_but_the_gain_is_that_of_the_load():
-    """The force of the cycle contains the inertia of the load."""
-    actuator = knee(stated="supply_pressure: 140 bar\n", load__inertia="0.2 kg*m^2")
-    actuator = actuator.changed({"control": None})
-    own = plant(actuator.subject())
-    scene, records = with_cycle(scenario(1.1), actuator.subject())
-    moving, loaded = (plant_of(scene, own, loaded=loaded) for loaded in (False, True))
-    assert own.mass - moving.mass == pytest.approx(20.0)
-    assert 0.05 < moving.mass < 0.5
-    assert (moving.design.load.mass, moving.design.load.inertia) == (0.0, 0.0)
-    assert loaded.mass == own.mass
-    assert moving.supply_pressure == loaded.supply_pressure == 140e5
-    gain = tune(scene, own, records).gains.proportional_gain
-    light = knee(stated="supply_pressure: 140 bar\n", load__mass="0 kg")
-    light = light.changed({"control": None})
-    stiffer = tune(scene, plant(light.subject()), records).gains.proportional_gain
-    assert gain < 0.7 * stiffer
+def test_the_load_moves_with_the_rod_but_its_inertia_counts_once():
+    """The force of the cycle contains it along the reference: J theta''/h is subtracted there."""
+    changes = {"load__mass": "0 kg", "load__inertia": "0.2 kg*m^2"}
+    actuator = knee(stated="supply_pressure: 140 bar\n", **changes)
+    subject = actuator.subject()
+    moving = plant_of(scenario(1.1), plant(subject))
+    assert moving.supply_pressure == 140e5
+    assert moving.design.load.inertia == 0.2
+    bare = knee(stated="supply_pressure: 140 bar\n", load__mass="0 kg")
+    name = (str(GAIT), "force of walk")
+    time, loaded = with_cycle(scenario(1.1), subject)[1][name]
+    inertia = with_cycle(scenario(1.1), bare.subject())[1][name][1] - loaded
+    lines = [line for line in GAIT.read_text("utf-8").splitlines() if not line.startswith("#")]
+    rows = np.array([line.split(",") for line in lines[1:]], dtype=float)
+    angle = CubicSpline(rows[:, 0], np.radians(rows[:, 1]), bc_type="periodic")
+    at = rows[0, 0] + time
+    phi = angle(at) + np.radians(120)
+    length = np.sqrt(0.25**2 + 0.062**2 - 2 * 0.25 * 0.062 * np.cos(phi))
+    expected = 0.2 * angle(at, 2) / (0.25 * 0.062 * np.sin(phi) / length)
+    assert np.abs(expected).max() > 50
+    assert inertia == pytest.approx(expected, abs=0.05 * np.abs(expected).max())
+
+
+def test_an_inertia_beyond_the_force_of_the_cycle_is_reported():
+    """20 mm at 2 Hz accelerate 1 t by 3.2 kN; the cycle has 500 N."""
+    actuator = knee(wave(), load__mass="1000 kg")
+    scene, records = with_cycle(scenario(0.5, sample_time=1e-3), actuator.subject())
+    found = simulate(scene, actuator.subject(), records=records)
+    assert found.cycle.inertia == pytest.approx(1000 * 0.020 * (4 * pi) ** 2, rel=0.01)
+    assert any("its force does not contain" in note for note in found.cycle.notes)
 
 
 def test_a_sine_takes_the_energy_of_the_closed_form():
@@ -116,7 +132,9 @@ def test_a_sine_takes_the_energy_of_the_closed_form():
     assert found.balance.energy < 1e-6
     assert "within 2 %" in found.cycle.sentence
     assert found.to_dict()["duty_cycle"]["results"]["duty_supply_energy"]["unit"] == "J"
-    assert any("only rod and piston move" in note for note in found.notes)
+    assert any("it is subtracted along the reference" in note for note in found.notes)
+    assert (found.cycle.samples, found.cycle.stated) == (401, 81)
+    assert any("401 samples of the splines" in note for note in found.cycle.notes)
 
 
 @pytest.mark.long
@@ -140,15 +158,15 @@ PEAKS = 0.05
 
 @pytest.mark.long
 @pytest.mark.parametrize(
-    ("design", "cycle"),
+    ("design", "cycle", "beyond"),
     [
-        ("knee_walking", "walk"),
-        ("knee_walking", "run"),
-        ("knee_walking", "rise"),
-        ("flight_control", "manoeuvre and gust"),
+        ("knee_walking", "walk", set()),
+        ("knee_walking", "run", {"power_peak"}),  # of noise between the samples of the file
+        ("knee_walking", "rise", {"pressure_min"}),  # where the valve leaks a third of the flow
+        ("flight_control", "manoeuvre and gust", {"pressure_min", "pressure_max", "opening"}),
     ],
 )
-def test_the_simulation_of_a_shipped_cycle_agrees_or_is_warned_of(design, cycle):
+def test_the_simulation_of_a_shipped_cycle_agrees_or_is_warned_of(design, cycle, beyond):
     """Energy within 2 %; peaks within 5 %, or the quasi-static metric says that it is doubtful."""
     trial = ao.cycle_scenario(DESIGNS / f"{design}.yaml", cycle)
     found = ao.simulate(trial)
@@ -160,10 +178,9 @@ def test_the_simulation_of_a_shipped_cycle_agrees_or_is_warned_of(design, cycle)
         scale = supply if "pressure" in row.name else abs(row.quasi_static)
         apart[row.name] = abs(row.simulated - row.quasi_static) / scale
     peaks = ("flow_peak", "power_peak", "power_absorbed", "pressure_min", "pressure_max", "opening")
-    for name in (f"duty_{peak}" for peak in peaks):
-        assert apart[name] < PEAKS or not metrics[name].in_range, (name, apart[name])
-    if cycle == "walk":
-        assert max(apart[f"duty_{peak}"] for peak in peaks) < PEAKS
+    assert {peak for peak in peaks if apart[f"duty_{peak}"] >= PEAKS} <= beyond
+    assert not any(metrics[f"duty_{peak}"].in_range for peak in beyond)
+    assert max(apart.values()) < 0.125
 
 
 @pytest.mark.long
@@ -294,8 +311,8 @@ def test_the_page_sets_both_models_side_by_side():
     first, second = [curve for curve in strip.panel.curves if curve.words == "quasi-static"]
     assert np.asarray(first.xs)[[0, -1]] == pytest.approx([0.0, 0.5])
     known = ao.evaluate(actuator).duty.cycles[0].traces
-    assert np.asarray(first.ys) == pytest.approx(known["pressure_a"] / 1e5)
-    assert np.asarray(second.ys) == pytest.approx(known["pressure_b"] / 1e5)
+    assert np.asarray(first.ys)[::5] == pytest.approx(known["pressure_a"] / 1e5)
+    assert np.asarray(second.ys)[::5] == pytest.approx(known["pressure_b"] / 1e5)
 
 
 def test_a_cycle_does_not_verify_dynamic_requirements(folder):

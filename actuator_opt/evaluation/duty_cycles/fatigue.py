@@ -121,7 +121,7 @@ class CycleFatigue:
                 behind = x > (x.max(axis=1, keepdims=True) + x.min(axis=1, keepdims=True)) / 2
                 a, b = (self._outputs.index(f"pulse_{chamber}") for chamber in "ab")
                 outputs[k] = np.where(behind, a, b)
-                first, second = (track.values[rows, track.column(x)] for x in (a, b))
+                first, second = (track.values[rows, track.columns[x]] for x in (a, b))
                 levels[k] = np.where(behind, first, second)
             else:
                 outputs[k] = self._outputs.index(f"pulse_{load}")

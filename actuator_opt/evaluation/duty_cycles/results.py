@@ -424,7 +424,7 @@ class _Taken(NamedTuple):
         """Samples of the worst values (extremes that are taken, windows and ranks, designs)."""
         if not len(self.outputs):
             return np.empty((0, 0, 0), dtype=np.intp)
-        known = track.values[:, track.column(self.outputs)]
+        known = track.values[:, track.columns[self.outputs]]
         return self.windows.least(known * self.signs[:, None])
 
 

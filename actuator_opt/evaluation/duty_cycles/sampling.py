@@ -35,13 +35,14 @@ class SampleResults:
     known: Array
     """Whether each output was computed (outputs,)."""
 
-    def column(self, outputs: Array | int) -> Array:
-        """Places of outputs among the known."""
-        return (np.cumsum(self.known) - 1)[outputs]
+    @cached_property
+    def columns(self) -> Rows:
+        """Place of each output among the known; meaningless for others."""
+        return np.cumsum(self.known) - 1
 
     def real(self, name: str) -> npt.NDArray[np.float64]:
         """A known result at all samples (samples, designs)."""
-        return self.values[:, self.column(self.outputs.index(name))]
+        return self.values[:, self.columns[self.outputs.index(name)]]
 
 
 class NearSamples(NamedTuple):
@@ -55,7 +56,7 @@ class NearSamples(NamedTuple):
 
     def at(self, outputs: Array | int, rows: Rows) -> Array:
         """Known outputs (..., designs, 1 + directions) at samples (..., designs)."""
-        column = self.track.column(outputs)
+        column = self.track.columns[outputs]
         picked: Array = self.values[self.places[rows], column, np.arange(rows.shape[-1])]
         return picked
 
