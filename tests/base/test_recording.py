@@ -380,3 +380,57 @@ def test_a_damaged_program_is_refused_or_harmless(data):
     ):
         with suppress(ValueError, IndexError, FloatingPointError):  # refused, or no finite value
             attempt()
+
+
+def shared_program(shared: int):
+    """A program of three inputs, the first of which many points share."""
+    trace = Recorder()
+    x, y, z = trace.variables(["x", "y", "z"], [0.5, 0.7, 1.1])
+    results = [np.exp(x) * sqrt(x + 2.0) * y, np.exp(x) + y * z, sqrt(x + 2.0) * 1.5]
+    return program(elements(np.stack([x, y, z])), elements(np.stack(results)), shared)
+
+
+@given(
+    sizes=st.lists(st.integers(1, 40), min_size=1, max_size=6),
+    shared=st.integers(0, 2),
+    directions=st.integers(0, 9),
+    summed=st.booleans(),
+    seed=st.integers(0, 10**6),
+)
+def test_groups_of_points_share_inputs_and_slopes(sizes, shared, directions, summed, seed):
+    """Results as those of every point alone: some instructions run once for a group."""
+    random = np.random.default_rng(seed)
+    group = np.repeat(np.arange(len(sizes), dtype=np.int32), sizes)
+    common = random.uniform(0.1, 2, (len(sizes), shared))
+    own = random.uniform(0.1, 2, (len(group), 3 - shared))
+    seeds = random.normal(size=(len(sizes), 3, directions))
+    made = shared_program(shared)
+    assert (made.once > 0) == (shared > 0)
+    rows = len(sizes) if summed else None
+    found = made.duals(common, own, seeds, rows, group)
+    points = np.concatenate([common[group], own], axis=1)
+    expected = shared_program(0).duals(np.empty((1, 0)), points, seeds[group])
+    if summed:
+        expected = np.add.reduceat(expected, np.searchsorted(group, range(len(sizes))))
+    np.testing.assert_allclose(found, expected, rtol=1e-13, atol=1e-13)
+    if len(set(sizes)) == 1:
+        assert np.array_equal(made.duals(common, own, seeds, rows), found)
+
+
+@pytest.mark.parametrize("group", [[1, 1], [0, 2], [0, -1], [1, 0], [0], [0, 0, 0]])
+def test_groups_out_of_order_are_refused(group):
+    """Each group begins at the first point, or after the group before."""
+    points = np.ones((2, 1)), np.ones((2, 2)), np.zeros((2, 3, 0))
+    with pytest.raises(ValueError, match="not the points"):
+        shared_program(1).duals(*points, 2, np.array(group, dtype=np.int32))
+
+
+def test_fewer_shared_inputs_than_the_program_has_are_correct():
+    """Nothing then runs once."""
+    own = np.random.default_rng(1).uniform(0.1, 2, (50, 3))
+    expected = shared_program(0).values(own)
+    assert np.array_equal(shared_program(2).values(own), expected)
+    common, rest = np.array([[0.4]]), own[:, 1:]
+    whole = np.concatenate([np.full((50, 1), 0.4), rest], axis=1)
+    found = shared_program(2).duals(common, rest, np.zeros((1, 3, 0)))[:, :, 0]
+    assert np.array_equal(found, shared_program(0).values(whole))

@@ -133,8 +133,8 @@ def test_a_sine_takes_the_energy_of_the_closed_form():
     assert "within 2 %" in found.cycle.sentence
     assert found.to_dict()["duty_cycle"]["results"]["duty_supply_energy"]["unit"] == "J"
     assert any("it is subtracted along the reference" in note for note in found.notes)
-    assert (found.cycle.samples, found.cycle.stated) == (401, 81)
-    assert any("401 samples of the splines" in note for note in found.cycle.notes)
+    assert (found.cycle.samples, found.cycle.stated) == (3041, 81)
+    assert any("3041 samples of the splines" in note for note in found.cycle.notes)
 
 
 @pytest.mark.long
@@ -161,7 +161,7 @@ PEAKS = 0.05
     ("design", "cycle", "beyond"),
     [
         ("knee_walking", "walk", set()),
-        ("knee_walking", "run", {"power_peak"}),  # of noise between the samples of the file
+        ("knee_walking", "run", set()),
         ("knee_walking", "rise", {"pressure_min"}),  # where the valve leaks a third of the flow
         ("flight_control", "manoeuvre and gust", {"pressure_min", "pressure_max", "opening"}),
     ],
@@ -180,7 +180,7 @@ def test_the_simulation_of_a_shipped_cycle_agrees_or_is_warned_of(design, cycle,
     peaks = ("flow_peak", "power_peak", "power_absorbed", "pressure_min", "pressure_max", "opening")
     assert {peak for peak in peaks if apart[f"duty_{peak}"] >= PEAKS} <= beyond
     assert not any(metrics[f"duty_{peak}"].in_range for peak in beyond)
-    assert max(apart.values()) < 0.125
+    assert max(apart.values()) < 0.13
 
 
 @pytest.mark.long
@@ -311,8 +311,8 @@ def test_the_page_sets_both_models_side_by_side():
     first, second = [curve for curve in strip.panel.curves if curve.words == "quasi-static"]
     assert np.asarray(first.xs)[[0, -1]] == pytest.approx([0.0, 0.5])
     known = ao.evaluate(actuator).duty.cycles[0].traces
-    assert np.asarray(first.ys)[::5] == pytest.approx(known["pressure_a"] / 1e5)
-    assert np.asarray(second.ys)[::5] == pytest.approx(known["pressure_b"] / 1e5)
+    assert np.asarray(first.ys)[::38] == pytest.approx(known["pressure_a"] / 1e5)
+    assert np.asarray(second.ys)[::38] == pytest.approx(known["pressure_b"] / 1e5)
 
 
 def test_a_cycle_does_not_verify_dynamic_requirements(folder):
