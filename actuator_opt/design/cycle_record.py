@@ -195,7 +195,8 @@ class CycleRecord:
         """At least `samples` samples: every interval is divided evenly, by the splines.
 
         The samples of the file stay, so that turning points stay. States are interpolated linearly.
-        The same record is returned if it has enough samples.
+        Warnings of extremes between samples no longer apply. The same record is returned if it has
+        enough samples.
         """
         parts = -(-(samples - 1) // (self.time.size - 1))
         if parts <= 1:
@@ -222,11 +223,14 @@ class CycleRecord:
             time=fixed(time),
             speed=speed,
             notes=(*self.notes, f"resampled from {self.time.size} to {time.size} samples"),
+            warnings=tuple(x for x in self.warnings if not x.startswith(_BETWEEN)),
             lines=tuple(map(int, lines)),
             **columns,
         )
 
 
+_BETWEEN = "between samples, "
+"""Beginning of a warning of extremes that no sample has."""
 _SPLINED = ("angle", "torque", "position", "force")
 """Columns of which a record has one pair, which splines join."""
 
@@ -606,7 +610,7 @@ def _overshoot(name: str, time: Array, values: Array, *, closed: bool) -> Iterat
     for end, sample in ((extremes.max(), values.max()), (extremes.min(), values.min())):
         if abs(end - sample) > OVERSHOOT * span and (end - sample) * (end - values.mean()) > 0:
             yield (
-                f"between samples, {name} reaches {_text(name, float(end))}, beyond the samples "
+                f"{_BETWEEN}{name} reaches {_text(name, float(end))}, beyond the samples "
                 f"({_text(name, float(sample))}): sample more finely"
             )
 
@@ -624,13 +628,13 @@ def _power_between(time: Array, motion: Array, load: Array, *, closed: bool) -> 
         at_samples = power[::BETWEEN]
     if not np.isfinite(power).all():
         return
-    for word, sign in (("largest given", 1.0), ("largest taken", -1.0)):
+    for word, sign in (("peak", 1.0), ("absorbed", -1.0)):
         peak, sample = (float(np.max(sign * values)) for values in (power, at_samples))
         if sample > 0 and peak > (1 + POWER_BETWEEN) * sample:
             yield (
-                f"between samples, the {word} power of motion is {100 * (peak / sample - 1):.0f} % "
-                "above that of all samples: smooth the file if this is noise; else state samples, "
-                "so that points of the splines count"
+                f"{_BETWEEN}the {word} power is {100 * (peak / sample - 1):.0f} % "
+                "above that of all samples: smooth the file if this is noise; else state "
+                "duty.samples, so that points of the splines count"
             )
 
 

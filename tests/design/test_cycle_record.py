@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from scipy.interpolate import CubicSpline
 
 from actuator_opt.base.errors import InputError
 from actuator_opt.design.cycle_record import COLUMNS, MOST, parse_cycle, read_cycle, spline
@@ -89,9 +90,28 @@ def test_the_gait_has_the_range_that_its_head_tells():
 
 def test_the_run_has_the_doubtful_sample_that_its_head_tells():
     """Its torque around foot strike (0.36 to 0.44 s, lines 59 to 71) is doubtful."""
-    (warning,) = read_cycle(CYCLES / "run_knee.csv").warnings
+    warning, _ = read_cycle(CYCLES / "run_knee.csv").warnings
     assert "joint_torque" in warning
     assert 59 <= int(warning.rsplit(" ", 1)[1]) <= 71
+
+
+def test_power_that_peaks_between_samples_is_reported_until_the_splines_count():
+    """The noise of the run: its speed peaks where no sample is."""
+    record = read_cycle(CYCLES / "run_knee.csv")
+    angle, torque = (
+        CubicSpline(record.time, values, bc_type="periodic")
+        for values in (record.angle, record.torque)
+    )
+    fine = np.linspace(record.time[0], record.time[-1], 20_001)
+    peak = np.max(angle(fine, 1) * torque(fine))
+    sample = np.max(angle(record.time, 1) * torque(record.time))
+    excess = 100 * (peak / sample - 1)
+    _, warning = record.warnings
+    assert "between samples, the peak power is" in warning
+    assert float(warning.split("power is ")[1].split(" %")[0]) == pytest.approx(excess, abs=1.5)
+    assert not any("between samples" in text for text in record.resampled(801).warnings)
+    walk = read_cycle(CYCLES / "gait_knee.csv")
+    assert not any("power" in text for text in walk.warnings)
 
 
 def test_arrays_are_read_only_and_a_pickle_is_the_same_cycle():
