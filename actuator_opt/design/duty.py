@@ -252,7 +252,7 @@ class DutySection(Section):
         return [
             f"duty.cycles[{cycle.name}]: {text}"
             for cycle in self.cycles
-            for text in cycle.record.warnings
+            for text in self.record(cycle).warnings
         ]
 
     def pressure_path(self, cycle: DutyCycle) -> str:
