@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -95,6 +96,8 @@ class Evaluator:
         self.best: Point | None = None
         self.precomputed: dict[bytes, npt.NDArray[np.generic]] = {}
         """By a point's coordinates: results computed in advance at the complex points `columns`."""
+        self.judged: dict[tuple[bytes, bool, float, bool], Any] = {}
+        """Optimality conditions of points, see `kinks.check`."""
         self._cache: dict[bytes, Point] = {}
 
     @property

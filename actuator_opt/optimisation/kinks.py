@@ -290,8 +290,20 @@ def check(
 ) -> kkt.KktResidual:
     """Optimality conditions at a point as in `kkt.check`, on a kink those of all pieces together.
 
-    The residual is then the largest, and the curvature the least, of all pieces.
+    The residual is then the largest, and the curvature the least, of all pieces. The evaluator
+    keeps the result, as a search asks for it several times.
     """
+    key = point.z.tobytes(), curvature, objective_scale, evaluator.exact
+    if key not in evaluator.judged:
+        evaluator.judged[key] = _checked(evaluator, point, curvature, objective_scale)
+    quality: kkt.KktResidual = evaluator.judged[key]
+    return quality
+
+
+def _checked(
+    evaluator: Evaluator, point: Point, curvature: bool, objective_scale: float
+) -> kkt.KktResidual:
+    """The result of `check`."""
     found = pieces(ParametricProblem.of(evaluator.problem), evaluator, point, objective_scale)
     qualities = [piece.quality for piece in found]
     if curvature:

@@ -89,21 +89,27 @@ def test_a_design_does_not_warn_of_a_slow_cycle():
     assert slow.metrics["duty_supply_share"].in_range
 
 
-def test_a_design_warns_where_leakage_governs_the_lowest_pressure():
+def test_a_design_warns_where_leakage_shifts_pressures_and_opening():
     """Shortly before the reversal the valve leaks 31 % of the flow; a tight one is fine."""
     walking = _walking("4")
-    (sentence,) = [text for text in walking.warnings if "of the flow is leakage" in text]
+    (sentence,) = [text for text in walking.warnings if "leakage takes" in text]
     worst = walking.duty.cycles[0].worst["pressure_a"]
     traces = walking.duty.cycles[0].traces
     share = traces["leakage"][worst.sample] / traces["flow"][worst.sample]
-    assert f"{100 * share:.0f} % of the flow" in sentence
-    assert f"at {worst.time:.3g} s" in sentence
+    assert f"leakage takes {100 * share:.0f} % of the flow at the lowest pressure" in sentence
+    assert f"({worst.time:.3g} s)" in sentence
+    high = np.maximum(traces["pressure_a"], traces["pressure_b"])
+    leaks = (traces["leakage"] / traces["flow"])[[np.argmax(high), np.argmax(traces["opening"])]]
+    for share, words in zip(
+        leaks, ("at the highest pressure", "at the largest opening"), strict=True
+    ):
+        assert (f"{100 * share:.0f} % {words}" in sentence) == (share > 0.1)
     assert "run actuator-opt simulate FILE --cycle walk" in sentence
     assert not walking.metrics["duty_suction_ratio"].in_range
     tight = ao.evaluate(knee(valve__leakage_flow="0 l/min",
                              piston__leakage_conductance="0 ml/min/bar",
                              variables__piston__leakage_conductance=None))  # fmt: skip
-    assert not [text for text in tight.warnings if "of the flow is leakage" in text]
+    assert not [text for text in tight.warnings if "leakage takes" in text]
 
 
 def test_friction_of_film_seals_is_said_to_be_dry():

@@ -37,6 +37,10 @@ LEAKING = 0.1
 is a fifth of a pressure drop)."""
 LOWEST = ("duty_pressure_min", "duty_suction_ratio")
 """Metrics of the lowest pressure."""
+HIGHEST = ("duty_pressure_max",)
+"""Metrics of the highest pressure."""
+OPENED = ("duty_opening",)
+"""Metrics of the largest opening."""
 RUBBING = ("duty_friction_energy", "duty_seal_temperature", "duty_temperature_margin")
 """Metrics that follow from the friction of the seals."""
 
@@ -101,20 +105,29 @@ def _simulation(cycle: CycleStudy) -> str:
 
 
 def _at_leakage(cycle: CycleStudy, *, valve: bool) -> Iterator[tuple[str, str]]:
-    """Warn if the valve leaks much of the flow where the pressure of a cycle is lowest."""
+    """Warn if the valve leaks much of the flow at an extreme pressure or at the largest opening."""
     if not valve or not cycle.worst:
         return
-    chamber = min(("pressure_a", "pressure_b"), key=lambda name: cycle.worst[name].value)
-    worst = cycle.worst[chamber]
-    leakage, flow = (float(cycle.traces[key][worst.sample]) for key in ("leakage", "flow"))
-    if not leakage > LEAKING * flow:
-        return
-    for metric in LOWEST:
+    traces, text = cycle.traces, INPUTS["pressure"].text
+    low, high = (f(traces["pressure_a"], traces["pressure_b"]) for f in (np.minimum, np.maximum))
+    affected: list[str] = []
+    places: list[str] = []
+    for metrics, sample, words in (
+        (LOWEST, np.argmin(low), f"at the lowest pressure, {text(float(low.min()), 3)}"),
+        (HIGHEST, np.argmax(high), f"at the highest pressure, {text(float(high.max()), 3)}"),
+        (OPENED, np.argmax(traces["opening"]), "at the largest opening"),
+    ):
+        leakage, flow = (float(traces[key][sample]) for key in ("leakage", "flow"))
+        if leakage > LEAKING * flow:
+            affected += metrics
+            share, time = 100 * leakage / flow, cycle.record.time[sample]
+            of_flow = "" if places else " of the flow"
+            places.append(f"{share:.0f} %{of_flow} {words} ({time:.3g} s)")
+    for metric in affected:
         yield (
             metric,
-            f"{cycle.name}: at {worst.time:.3g} s, {100 * leakage / flow:.0f} % of the flow is "
-            "leakage, which brings the pressures of both chambers closer together; the lowest "
-            f"pressure, {INPUTS['pressure'].text(worst.value, 3)}, leaves this out: "
+            f"{cycle.name}: leakage takes {', '.join(places)}; it brings the pressures of both "
+            "chambers closer together and opens the valve further, which these results leave out: "
             f"run {_simulation(cycle)}",
         )
 
