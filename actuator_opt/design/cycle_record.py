@@ -39,7 +39,8 @@ CLOSURE = 0.01
 """Largest difference of the ends of a closed cycle, as a share of the column's range (our
 choice)."""
 POWER_BETWEEN = 0.1
-"""Excess of the power between samples over that at the samples that is reported (our choice)."""
+"""Excess of the power between samples that is reported, as a share of the largest power at the
+samples (our choice)."""
 BETWEEN = 8
 """Points of each time step at which the power is compared."""
 OVERSHOOT = 0.01
@@ -616,25 +617,26 @@ def _overshoot(name: str, time: Array, values: Array, *, closed: bool) -> Iterat
 
 
 def _power_between(time: Array, motion: Array, load: Array, *, closed: bool) -> Iterator[str]:
-    """A sentence if the largest power by the splines exceeds that of all samples by a tenth."""
+    """A sentence if a power by the splines exceeds those of all samples."""
     with np.errstate(all="ignore"):
         try:
             moved, loaded = (spline(time, values, closed=closed) for values in (motion, load))
         except (ValueError, np.linalg.LinAlgError):
             return
         steps = np.diff(time)[:, None] * np.linspace(0, 1, BETWEEN, endpoint=False)
-        grid = (time[:-1, None] + steps).ravel()
+        grid = np.append((time[:-1, None] + steps).ravel(), time[-1])
         power = moved(grid, 1) * loaded(grid)
-        at_samples = power[::BETWEEN]
     if not np.isfinite(power).all():
         return
+    stated, largest = power[::BETWEEN], float(np.abs(power[::BETWEEN]).max())
     for word, sign in (("peak", 1.0), ("absorbed", -1.0)):
-        peak, sample = (float(np.max(sign * values)) for values in (power, at_samples))
-        if sample > 0 and peak > (1 + POWER_BETWEEN) * sample:
+        excess = float(np.max(sign * power) - np.max(sign * stated))
+        if excess > POWER_BETWEEN * largest:
+            share = f"{100 * excess / largest:.0f} %" if largest else "all"
             yield (
-                f"{_BETWEEN}the {word} power is {100 * (peak / sample - 1):.0f} % "
-                "above that of all samples: smooth the file if this is noise; else state "
-                "duty.samples, so that points of the splines count"
+                f"{_BETWEEN}the {word} power is higher than at all samples, by {share} of the "
+                "largest: smooth the file if this is noise; else state duty.samples, so that "
+                "points of the splines count"
             )
 
 

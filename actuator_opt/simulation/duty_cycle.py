@@ -144,8 +144,9 @@ def _resampled(cycle: DutyCycle, subject: PreparedDesign) -> CycleStudy:
     """A cycle with enough samples for a smooth reference."""
     models, numbers = duty_numbers(subject, subject.values())
     record = models.records[cycle.name].resampled(SAMPLES + 1)
-    finer = CycleModels(models.plan, {**models.records, cycle.name: record}, models.names)
-    return next(x for x in study(finer, numbers[:, 0]).cycles if x.name == cycle.name)
+    finer = CycleModels(models.plan, {cycle.name: record}, models.names)
+    (found,) = study(finer, numbers[:, 0]).cycles
+    return found
 
 
 def _require_positions(
@@ -311,7 +312,7 @@ class CycleComparison:
             yield (
                 f"the inertia of the load along {self.cycle} reaches {inertia}, the force of the "
                 f"cycle only {force}: the motion is noisy, or its force does not contain this "
-                "load: smooth the file, or lower load.mass"
+                "load: smooth the file, or lower load.mass or load.inertia"
             )
         if self.position_error_max > LAG * self.travel:
             share = 100 * self.position_error_max / self.travel
@@ -407,7 +408,7 @@ def compare(
         samples=len(static.time),
         force=float(np.max(np.abs(static.traces["force"]))),
         inertia=float(np.max(np.abs(inertia_force(actuator, static)))),
-        stated=len(subject.design.duty.record(cycle).time),
+        stated=len(cycle.record.time),
     )
 
 
@@ -440,7 +441,8 @@ def _rows(
     """Results of both models."""
     traces, energies = static.traces, static.energies
     own = static.time - static.time[0]
-    force = np.interp(window.time % own[-1], own, traces["force"])
+    period = own[-1] if static.record.closed else None
+    force = np.interp(window.time, own, traces["force"], period=period)
     power = force * signals["speed"]
     pressures = [window.of(signals[f"pressure_{chamber}"]) for chamber in "ab"]
     known = [traces["pressure_a"], traces["pressure_b"]]

@@ -184,12 +184,15 @@ def test_a_table_encloses_what_it_samples(rate, phase, first, second, share):
         return np.sin(rate * x + phase)
 
     # beside it two that only rise: one with a flat end, one constant
-    others = [np.minimum(t, 1.0), np.full_like(t, 0.5)]
+    def flattening(x):
+        return 1 - np.maximum(1 - x, 0.0) ** 3
+
+    others = [flattening(t), np.full_like(t, 0.5)]
     tables = Tables([SampledFunction.of(t, values, 1.5) for values in (wave(t), *others)])
     low, high = sorted((-1 + 3 * first, -1 + 3 * second))
     x = low + share * (high - low)
     every = np.ones(3)
-    true = np.array([float(wave(x)), min(x, 1.0), 0.5])
+    true = np.array([float(wave(x)), float(flattening(x)), 0.5])
     room = tables.room + ROUNDING
     assert (np.abs(tables.value(x * every) - true) <= room).all()
     least, most = tables.hull(low * every, high * every)

@@ -80,7 +80,9 @@ typedef struct {
     const double *shared, *own, *seeds;
     const int32_t *group;              /* of each point; NULL: groups have equal size */
     Py_ssize_t count, first, seeded;   /* points; inputs that are shared; inputs with seeds */
-    Py_ssize_t sharing, same, summed;  /* successive points of shared inputs, seeds, results; 0: groups */
+    Py_ssize_t groups;                 /* that share inputs */
+    /* successive points with the same shared inputs, seeds, and row of the results; 0: a group */
+    Py_ssize_t sharing, same, summed;
     Py_ssize_t once;                   /* instructions that need shared inputs only */
 } Points;
 
@@ -110,11 +112,11 @@ static Py_ssize_t together_from(const Points *x, Py_ssize_t at, Py_ssize_t L) {
     return left_in(x, x->same, at, left_in(x, x->sharing, at, most));
 }
 
-/* Write the inputs of the points from `at`, in L lanes; lanes beyond the last point repeat one. */
-static void inputs_to(const Program *p, const Points *x, Py_ssize_t at, Py_ssize_t wide,
+/* Write the inputs of the points from `at`, in L lanes; lanes beyond the last point repeat one.
+   Without `fresh`, shared inputs are there already. */
+static void inputs_to(const Program *p, const Points *x, Py_ssize_t at, Py_ssize_t wide, int fresh,
                       double *V, Py_ssize_t L) {
     const Py_ssize_t rest = p->inputs - x->first;
-    const int fresh = x->first > 0 && begins(x, x->sharing, at);
     for (Py_ssize_t l = 0; l < L; l++) {
         const Py_ssize_t from = at + (l < wide ? l : 0);
         const double *own = x->own + from * rest;
@@ -131,10 +133,12 @@ static int run_values(const Program *p, const Points *x, double *results) {
     double *V = calloc(L * (p->slots + p->constant_count), sizeof(double));
     if (V == NULL) return -1;
     constants_to(p, V, (int)L);
+    const int mixed = x->groups * 2 * L > x->count; /* small groups: lanes belong to several */
     for (Py_ssize_t at = 0, wide; at < x->count; at += wide) {
-        const Py_ssize_t first = begins(x, x->sharing, at) ? 0 : x->once;
-        wide = together_from(x, at, L);
-        inputs_to(p, x, at, wide, V, L);
+        const int fresh = mixed || begins(x, x->sharing, at);
+        const Py_ssize_t first = fresh ? 0 : x->once;
+        wide = !mixed ? together_from(x, at, L) : x->count - at < L ? x->count - at : L;
+        inputs_to(p, x, at, wide, fresh, V, L);
         (L == 1 ? run_single : run_lanes)(p->code + WORDS * first, p->count - first, p->extra, V);
         for (Py_ssize_t l = 0; l < wide; l++) {
             double *row = results + part_of(x, x->summed, at + l) * p->results;
@@ -185,9 +189,10 @@ static void run_some_slopes(const Program *p, const Points *x, Py_ssize_t T, Py_
                             double *results) {
     const Dual computed = dual_of(wide, L);
     for (Py_ssize_t at = 0, lanes; at < x->count; at += lanes) {
-        const Py_ssize_t skipped = begins(x, x->sharing, at) ? 0 : x->once;
+        const int fresh = begins(x, x->sharing, at) || begins(x, x->same, at);
+        const Py_ssize_t skipped = fresh ? 0 : x->once;
         lanes = together_from(x, at, L);
-        inputs_to(p, x, at, lanes, V, L);
+        inputs_to(p, x, at, lanes, begins(x, x->sharing, at), V, L);
         for (Py_ssize_t l = 0; l < L && begins(x, x->same, at); l++) {
             const Py_ssize_t part = part_of(x, x->same, at + (l < lanes ? l : 0));
             const double *seed = x->seeds + part * x->seeded * T;
@@ -321,8 +326,9 @@ PyDoc_STRVAR(run_doc,
     "Run a checked program for points. The first inputs (groups, first) are each shared by successive\n"
     "points, as many for every group, or those of which `group` (points,), int32, is the number; the\n"
     "others are (points, inputs - first). Without seeds (width 0), `results` is (rows, outputs). With\n"
-    "seeds (groups, seeded, width) of the first inputs it is (rows, outputs, 1 + width); width is a\n"
-    "multiple of 4. Each row is the sum over the points of a group.");
+    "seeds (parts, seeded, width) of the first inputs it is (rows, outputs, 1 + width); width is a\n"
+    "multiple of 4. Seeds and rows may belong to the groups, or to any parts of equal size; each row is\n"
+    "the sum over the points of a part.");
 
 /* Number of successive points in each part of a buffer: 0 if they are the groups, -1 if they do not
    fit. */
@@ -367,6 +373,7 @@ static PyObject *run(PyObject *self, PyObject *args) {
         x.summed = successive(&x, groups, size[4], p->results * (1 + width));
         valid = valid && groups >= 0 && x.sharing >= 0 && x.same >= 0 && x.summed >= 0;
         x.once = x.first < program->shared ? 0 : program->once;
+        x.groups = x.first > 0 ? size[0] / x.first : x.count;
     }
     if (valid) {
         Py_BEGIN_ALLOW_THREADS

@@ -79,7 +79,7 @@ class Program:
     inputs: int
     once: int = 0
     shared: int = 0
-    _checked: dict[bytes, Any] = field(default_factory=dict)
+    _checked: dict[bytes | None, Any] = field(default_factory=dict)
     """Programs for the virtual machine, by the inputs that change (see `along`)."""
 
     def __getstate__(self) -> tuple[Any, ...]:
@@ -230,7 +230,7 @@ class Program:
         The virtual machine checks a program once, here, and copies it. Raises `ValueError` for a
         damaged program.
         """
-        key = b"" if moving is None else moving.tobytes()
+        key = None if moving is None else moving.tobytes()
         if key not in self._checked:
             code, varies = (self.code, self.frozen) if moving is None else self.along(moving)
             self._checked[key] = COMPILED.checked(

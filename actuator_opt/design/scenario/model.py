@@ -398,7 +398,7 @@ class Scenario(Section):
         str | None,
         CaseName(
             "duty cycle of the design that is simulated: its position over time is the reference, "
-            "its force the load, in place of load.mass and load.inertia",
+            "its force, which contains the inertia of the load, the load",
         ),
     ] = None
     duration: Annotated[float, Of("duration", "simulated time")]

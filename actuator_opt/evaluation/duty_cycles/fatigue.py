@@ -160,13 +160,13 @@ class CycleFatigue:
         high, low = (near.at(x.outputs, x.rows) for x in (counted.highest, counted.lowest))
         lives = numbers[self._lives]  # (duty cycles, repeats and starts, designs, 1 + directions)
         own = self._with_starts(counted, near, high, low, lives)
+        used = np.append(counted.times.any(axis=(0, 3)), [[True] * len(lives)], axis=0)
         blocks = [
-            self._damage(numbers, _Ends(*(x[:, :, k] for x in own)))
+            self._damage(numbers, _Ends(*(x[:, used[:, k], k] for x in own)))
             if wanted[k * parts : (k + 1) * parts].any()
             else np.zeros((parts, *shape))
             for k in range(len(lives))
         ]
-        used = np.append(counted.times.any(axis=(0, 3)), [[True] * len(lives)], axis=0)
         whole = [x[:, used] for x in own]
         if len(lives) > 1:
             changes = _changes(high[:, 0], low[:, 0], lives[:, 1])
@@ -193,9 +193,9 @@ class CycleFatigue:
     def _damage(self, numbers: Array, ends: _Ends) -> Array:
         """Miner's sums of all parts with slopes (parts, designs, 1 + directions)."""
         largest, smallest, count = (x[..., 0][self._load] for x in ends)
-        kept = []
+        kept, unused = [], count == 0  # loads and designs may have fewer cycles than others
         for x in (largest, smallest):
-            slack = self._tension[:, None, None] & (x < 0)
+            slack = unused | (self._tension[:, None, None] & (x < 0))
             x[slack] = 0.0
             kept.append(~slack)
         steep = numbers.shape[2] > 1

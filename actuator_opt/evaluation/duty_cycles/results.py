@@ -543,11 +543,11 @@ class TimeWindows(NamedTuple):
         outputs = values.transpose(1, 2, 0)[:, :, self.rows]  # (outputs, designs, windows, samples)
         keys = np.where(np.isnan(outputs), -np.inf, outputs)
         keys[..., self.repeated] = np.inf
-        ranks, every = [], np.arange(keys.size // keys.shape[-1])
+        ranks = []
         for _ in range(RANKS):
             ranks.append(np.argmin(keys, axis=-1))
             if keys.shape[-1] > 1:
-                keys.reshape(-1, keys.shape[-1])[every, ranks[-1].ravel()] = np.inf
+                np.put_along_axis(keys, ranks[-1][..., None], np.inf, axis=-1)
         picked = np.stack(ranks, axis=-1)  # (outputs, designs, windows, ranks)
         found: npt.NDArray[np.intp] = self.rows[np.arange(len(self.rows))[:, None], picked]
         return found.reshape(*found.shape[:2], -1).transpose(0, 2, 1)

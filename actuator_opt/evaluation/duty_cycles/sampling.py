@@ -23,6 +23,8 @@ from .numbers import SamplePlan
 from .samples import COLUMNS, NEIGHBOURS, sample, summands
 
 Rows = npt.NDArray[np.intp]
+WITH_SUPPLY = (*COLUMNS, "supply")
+"""Columns of a cycle that states the supply pressure of every sample."""
 
 
 @dataclass(frozen=True)
@@ -124,9 +126,7 @@ class Part(NamedTuple):
     sizes: Rows
     """Number of samples of each of these cycles."""
     data: Array
-    """Columns of the samples (samples, columns)."""
-    around: Array
-    """These and `NEIGHBOURS`, for sums."""
+    """Columns of the samples, and those of `NEIGHBOURS` (samples, columns)."""
 
 
 class Samples:
@@ -156,7 +156,7 @@ class Samples:
             for name, x in records.items()
         ]
         self._data = np.concatenate([_data(record) for record in records.values()])
-        self._around = np.concatenate([_neighbours(record) for record in records.values()])
+        self._neighbours = np.concatenate([_neighbours(record) for record in records.values()])
         self._ends = np.array([[x.motion.min(), x.motion.max()] for x in records.values()])
         self._functions: dict[Any, RecordedFunction] = {}
         self._parts: dict[bytes, list[Part]] = {}
@@ -182,7 +182,7 @@ class Samples:
         if wanted is None:
             wanted = np.ones(len(self.outputs), dtype=bool)
         values = np.empty((self.first[-1], wanted.sum(), inputs.shape[0]))
-        for part in parts:
+        for part in parts if wanted.any() else ():
             found = self._run(_results, part, inputs, wanted, sloped=False)
             values[part.rows] = found[..., 0].transpose(1, 2, 0)
         return SampleResults(values, self.outputs, wanted)
@@ -196,14 +196,14 @@ class Samples:
         track : results of all samples
         rows : samples
         """
-        if inputs.shape[1] == 1:
+        if inputs.shape[1] == 1 or not track.known.any():
             return NearSamples(track.values[..., None], np.arange(len(self._cycle)), track)
         marked = np.zeros(len(self._cycle), dtype=bool)
         for some in rows:
             marked[some] = True
         places = np.cumsum(marked) - 1
         values = np.empty((places[-1] + 1, track.known.sum(), *inputs.shape))
-        for part in self._by_kind(np.flatnonzero(marked), whole=False):
+        for part in self._by_kind(np.flatnonzero(marked)):
             found = self._run(_results, part, inputs, track.known)
             values[places[part.rows]] = inputs.spread(found.transpose(1, 2, 0, 3))
         return NearSamples(values, places, track)
@@ -249,7 +249,7 @@ class Samples:
         """
         designs, groups = inputs.shape[0], len(part.cycles) * inputs.shape[0]
         summed = function is summands
-        data = part.around if summed else part.data
+        data = part.data if summed else part.data[:, : len(part.kind.columns)]
         own = data if designs == 1 else np.broadcast_to(data, (designs, *data.shape))
         if weights is not None:
             own = np.array(own).reshape(designs, *data.shape)
@@ -298,22 +298,22 @@ class Samples:
 
         A program for one direction of the rod is shorter than one that selects by direction.
         """
-        sides = self._sides(numbers)
-        key = sides.tobytes()
+        known = self._outward(numbers)
+        key = known.tobytes()
         if key not in self._parts:
-            ahead = sides[self._cycle] * self._data[:, COLUMNS.index("rate")] >= 0
-            known = sides[self._cycle] != 0
+            ahead = self._data[:, COLUMNS.index("rate")] >= 0
+            certain = known[self._cycle]
             self._parts[key] = [
                 part._replace(kind=part.kind._replace(extending=extending))
                 for extending, rows in (
-                    (True, known & ahead), (False, known & ~ahead), (None, ~known)
+                    (True, certain & ahead), (False, certain & ~ahead), (None, ~certain)
                 )
-                for part in self._by_kind(np.flatnonzero(rows), whole=True)
+                for part in self._by_kind(np.flatnonzero(rows))
             ]  # fmt: skip
         return self._parts[key]
 
-    def _by_kind(self, rows: Rows, *, whole: bool) -> list[Part]:
-        """Samples by the kind of their cycles; of parts that are not `whole` there are no sums."""
+    def _by_kind(self, rows: Rows) -> list[Part]:
+        """Samples by the kind of their cycles."""
         parts = []
         for kind in dict.fromkeys(self._kinds):
             own = rows
@@ -322,25 +322,19 @@ class Samples:
             sizes = np.bincount(self._cycle[own], minlength=len(self._kinds))
             cycles, data = np.flatnonzero(sizes), self._data[own, : len(kind.columns)]
             if len(own):
-                around = np.concatenate([data, self._around[own]], axis=1) if whole else data
-                parts.append(Part(kind, own, cycles, sizes[cycles], data, around))
+                data = np.concatenate([data, self._neighbours[own]], axis=1)
+                parts.append(Part(kind, own, cycles, sizes[cycles], data))
         return parts
 
-    def _sides(self, numbers: Array) -> npt.NDArray[np.int8]:
-        """Sign of the lever arm of each cycle (cycles,); 0 if it changes or differs by design."""
-        sides = np.sign(numbers[:, self.names.index("arm")])
+    def _outward(self, numbers: Array) -> npt.NDArray[np.bool_]:
+        """Whether the lever arm is positive all along each cycle, of all designs (cycles,)."""
+        outward = numbers[:, self.names.index("arm")] > 0
         linked = np.array([kind.linked for kind in self._kinds])
-        if linked.any():  # the sign of the sine of the angle between the radii
+        if linked.any():  # where the sine of the angle between the radii is
             offset = numbers[linked, self.names.index("angle_offset")]
-            turned = (self._ends[linked][:, :, None] + offset[:, None]) / np.pi
-            first, last = np.floor(turned.transpose(1, 0, 2))
-            sides[linked] = np.where(first == last, 1.0 - 2.0 * (first % 2), 0.0)
-        same = (sides == sides[:, :1]).all(axis=1)
-        return np.where(same, sides[:, 0], 0.0).astype(np.int8)
-
-
-WITH_SUPPLY = (*COLUMNS, "supply")
-"""Columns of a cycle that states the supply pressure of every sample."""
+            first, last = self._ends[linked].T[:, :, None] + offset
+            outward[linked] = (first > 0) & (last < np.pi)
+        return np.asarray(outward.all(axis=1))
 
 
 def _results(*arguments: Any, **stated: Any) -> list[Array]:

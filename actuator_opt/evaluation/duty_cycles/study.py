@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -302,7 +302,7 @@ class DutyStudy:
         return tuple(self.find_shortfalls())
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "shortfalls": self.shortfalls, "find_shortfalls": tuple}
+        return {**self.__dict__, "find_shortfalls": partial(tuple, self.shortfalls)}
 
     def to_dict(self) -> dict[str, Any]:
         """JSON data."""
