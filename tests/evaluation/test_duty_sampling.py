@@ -9,8 +9,8 @@ import pytest
 
 from actuator_opt.base.symbolic import program as programs
 from actuator_opt.design.cycle_record import read_cycle
-from actuator_opt.evaluation.duty_cycles.numbers import SamplePlan
-from actuator_opt.evaluation.duty_cycles.results import CycleModels
+from actuator_opt.evaluation.duty_cycles.numbers import STRESS, FatiguePart, SamplePlan
+from actuator_opt.evaluation.duty_cycles.results import RANKS, CycleModels, Place, windows_of
 
 BAR = 1e5
 AREA_A, AREA_B = math.pi / 4 * 0.023**2, math.pi / 4 * (0.023**2 - 0.013**2)
@@ -134,3 +134,62 @@ def test_the_worst_samples_of_every_cycle_are_in_its_windows():
             ends = track.real(output)[:, 0]
             assert len(windows) >= 4
             assert best(windows) == best(ends)
+
+
+@pytest.mark.parametrize("designs", [1, 3])
+def test_the_next_worst_sample_is_another(designs):
+    """Of several outputs and designs, in windows of different length; NaN is the worst."""
+    records = [read_cycle(CYCLES[name]) for name in ("long", "short")]
+    windows = windows_of(records, 4)
+    random = np.random.default_rng(5)
+    values = random.normal(size=(sum(len(x.time) for x in records), 5, designs))
+    values[7, 2, 0] = np.nan
+    found = windows.least(values).reshape(5, len(windows.cycles), RANKS, designs)
+    for group in windows.groups:
+        for window, rows, repeated in zip(*group, strict=True):
+            own = rows[~repeated]
+            for output in range(5):
+                for design in range(designs):
+                    keys = np.nan_to_num(values[own, output, design], nan=-np.inf)
+                    expected = own[np.argsort(keys)[:RANKS]]
+                    assert np.array_equal(found[output, window, :, design], expected)
+
+
+def strong(cycles) -> dict:
+    """Damage of a life of some cycles of 20 kN, of a steady load, and of noise of 2 kN."""
+    time = np.linspace(0.0, 1.0, 201)
+    x = 50 + 20 * np.sin(2 * np.pi * time)
+    noise = np.random.default_rng(2).normal(size=time.size)
+    loads = {"strong": 2e4 * np.cos(4 * np.pi * time), "noise": 2e3 * noise, "hold": 500 + 0 * time}
+    records = {}
+    for name in cycles:
+        force = np.append(loads[name][:-1], loads[name][0])
+        rows = [f"{t:.6f},{p:.6f},{f:.6f}" for t, p, f in zip(time, x, force, strict=True)]
+        rows[-1] = f"{time[-1]:.6f},{x[0]:.6f},{force[0]:.6f}"
+        head = "time [s],position [mm],force [N]"
+        records[name] = read_cycle("\n".join([head, *rows]) + "\n")
+    values = {k: v for k, v in numbers(120.0, []).items() if "|" not in k}
+    for name in cycles:
+        keys = ("load_scale", "time_scale", "level", "arm", "shift", "repeats", "starts")
+        values |= {
+            f"{name}|{key}": x for key, x in zip(keys, (1, 1, 210e5, 1, 0, 1e3, 10), strict=True)
+        }
+    part = (400e6, 0.0, 0.5, 500e6, 160e6, 1e7)
+    values |= {f"part0.{key}": x for key, x in zip(STRESS, part, strict=True)}
+    plan = SamplePlan(frozenset(), True, (), (), (FatiguePart("rod", "rod"),), {})
+    found = CycleModels(plan, records, tuple(values))
+    full = np.array([*values.values()])[:, None, None] * np.array([1.0, 0.01])
+    return dict(zip(found.places, found.duals(full)[:, 0], strict=True))
+
+
+def test_the_damage_of_a_cycle_does_not_depend_on_the_cycles_beside_it():
+    """Columns that only fill up to the busiest cycle have none, though their stress has no life."""
+    together = strong(["strong", "noise", "hold"])
+    total = 0.0
+    for name in ("strong", "noise", "hold"):
+        place = Place(name, "damage", "rod")
+        alone = strong([name])[place]
+        np.testing.assert_allclose(together[place], alone, rtol=1e-12)
+        assert np.isfinite(alone).all()
+        total += alone[0]
+    assert together[Place("", "damage", "rod")][0] >= total > 0

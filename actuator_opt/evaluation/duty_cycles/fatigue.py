@@ -16,7 +16,7 @@ from ...base.numeric import Array
 from ...base.symbolic.recorded import RecordedFunction
 from ...models import endurance, rainflow
 from .numbers import LIFE, STRESS, History, SamplePlan
-from .sampling import NearSamples, Rows, SampleResults
+from .sampling import NearSamples, Rows, SampleResults, padded
 
 _LOCAL = ("largest", "smallest", *STRESS)
 """Inputs of the damage of a counted cycle: the ends of the load, and the numbers of the part."""
@@ -101,18 +101,18 @@ class CycleFatigue:
         words = (*names, "") if parts else ()
         self.keys = [(cycle, "damage", part.place) for cycle in words for _, part in parts]
         self._lives = np.array([[rows[f"{name}|{key}"] for key in LIFE] for name in names])
-        if parts:
-            starts, ends = first[:-1][repeated], first[1:][repeated]
-            places = starts[:, None] + np.arange((ends - starts).max())
-            self._samples = np.minimum(places, ends[:, None] - 1)
+        self._groups = padded(first[:-1][repeated], first[1:][repeated]) if parts else []
         self._damage_of = RecordedFunction(_damage_of, _LOCAL, np.ones(len(_LOCAL)))
 
-    def counted(self, track: SampleResults) -> _Counted:
-        """The counted cycles of every duty cycle of the life.
+    def counted(self, track: SampleResults) -> list[_Counted]:
+        """The counted cycles of every duty cycle of the life, by length of the duty cycle."""
+        return [self._counted(track, group.rows) for group in self._groups]
 
-        Samples of short cycles are filled up by the last, which changes no counted cycle.
+    def _counted(self, track: SampleResults, rows: Rows) -> _Counted:
+        """The counted cycles of duty cycles with samples `rows` (duty cycles, samples).
+
+        Short ones are filled up by their last sample, which changes no counted cycle.
         """
-        rows = self._samples
         shape = (len(self._loads), *rows.shape, track.values.shape[2])
         outputs, levels = np.empty(shape, dtype=np.intp), np.empty(shape)
         for k, load in enumerate(self._loads):
@@ -145,7 +145,9 @@ class CycleFatigue:
             spots(np.argmin(levels, axis=2)[:, None]),
         )
 
-    def damages(self, numbers: Array, counted: _Counted, near: NearSamples, wanted: Array) -> Array:
+    def damages(
+        self, numbers: Array, counted: Sequence[_Counted], near: NearSamples, wanted: Array
+    ) -> Array:
         """Miner's sums with slopes (keys, designs, 1 + directions).
 
         Results that are not wanted may be 0.
@@ -157,21 +159,28 @@ class CycleFatigue:
         wanted : whether each result is wanted (keys,)
         """
         parts, shape = len(self._load), numbers.shape[1:]
-        high, low = (near.at(x.outputs, x.rows) for x in (counted.highest, counted.lowest))
         lives = numbers[self._lives]  # (duty cycles, repeats and starts, designs, 1 + directions)
-        own = self._with_starts(counted, near, high, low, lives)
-        used = np.append(counted.times.any(axis=(0, 3)), [[True] * len(lives)], axis=0)
-        blocks = [
-            self._damage(numbers, _Ends(*(x[:, used[:, k], k] for x in own)))
-            if wanted[k * parts : (k + 1) * parts].any()
-            else np.zeros((parts, *shape))
-            for k in range(len(lives))
-        ]
-        whole = [x[:, used] for x in own]
+        blocks = np.zeros((1 + len(lives), parts, *shape))
+        whole: list[Sequence[Array]] = []
+        extremes: list[tuple[Array, Array]] = []
+        for (cycles, _, _), some in zip(self._groups, counted, strict=True):
+            high, low = (near.at(x.outputs, x.rows) for x in (some.highest, some.lowest))
+            own = self._with_starts(some, near, high, low, lives[cycles])
+            used = np.append(some.times.any(axis=(0, 3)), [[True] * len(cycles)], axis=0)
+            for k, cycle in enumerate(cycles):
+                if wanted[cycle * parts : (cycle + 1) * parts].any():
+                    blocks[cycle] = self._damage(
+                        numbers, _Ends(*(x[:, used[:, k], k] for x in own))
+                    )
+            whole.append([x[:, used] for x in own])
+            extremes.append((high[:, 0], low[:, 0]))
         if len(lives) > 1:
-            changes = _changes(high[:, 0], low[:, 0], lives[:, 1])
-            whole = [np.concatenate(pair, axis=1) for pair in zip(whole, changes, strict=True)]
-        return np.concatenate([*blocks, self._damage(numbers, _Ends(*whole))])
+            high, low = (np.concatenate(x, axis=1) for x in zip(*extremes, strict=True))
+            order = np.concatenate([group.parts for group in self._groups])
+            whole.append(_changes(high, low, lives[order, 1]))
+        ends = _Ends(*(np.concatenate(x, axis=1) for x in zip(*whole, strict=True)))
+        blocks[-1] = self._damage(numbers, ends)
+        return blocks.reshape(-1, *shape)
 
     @staticmethod
     def _with_starts(

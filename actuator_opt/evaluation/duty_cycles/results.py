@@ -33,7 +33,7 @@ from ..values import Values
 from .fatigue import CycleFatigue
 from .numbers import CYCLE, SamplePlan
 from .samples import SEAL_SUMS, SUMS, leakage_at_rest
-from .sampling import Inputs, NearSamples, Rows, SampleResults, Samples
+from .sampling import Inputs, NearSamples, Padded, Rows, SampleResults, Samples, padded
 
 WINDOWS = 8
 """Windows of time of all cycles together (our choice). The extremes in each window are separate
@@ -198,7 +198,7 @@ class CycleModels:
             if numbers.shape[1] < count:
                 return self.duals(numbers, wanted)[:, place]
         selection = self._selection(wanted)
-        most = max(1, MOST_SAMPLES // max(windows.rows.size for _, windows in self._extremes))
+        most = max(1, MOST_SAMPLES // int(self._samples.first[-1]))
         blocks = []
         with np.errstate(all="ignore"):
             for at in range(0, count, most):
@@ -259,8 +259,8 @@ class CycleModels:
         inputs, parts = Inputs(own), self._samples.parts(own[..., 0])
         track = self._samples.values(inputs, parts, selection.needed)
         picks = [taken.rows(track) for taken in selection.extremes]
-        counted = self._fatigue.counted(track) if selection.damage.any() else None
-        rows = [*picks, *(counted.rows if counted else ())]
+        counted = self._fatigue.counted(track) if selection.damage.any() else []
+        rows = [*picks, *(spots for part in counted for spots in part.rows)]
         if selection.exchange:
             rows += [self._strokes.start, self._strokes.end]
         near = self._samples.near(inputs, track, rows)
@@ -519,10 +519,8 @@ class TimeWindows(NamedTuple):
     labels: tuple[str, ...]
     cycles: Rows
     """Number of the cycle of every window."""
-    rows: Rows
-    """Samples of every window (windows, samples); short windows repeat their last sample."""
-    repeated: npt.NDArray[np.bool_]
-    """Whether a sample only fills up its window."""
+    groups: list[Padded]
+    """The windows by length."""
 
     @property
     def ranked(self) -> list[tuple[int, str]]:
@@ -540,17 +538,19 @@ class TimeWindows(NamedTuple):
         Values (samples, outputs, designs) give samples (outputs, windows * RANKS, designs). An
         unknown value (NaN) is the least.
         """
-        outputs = values.transpose(1, 2, 0)[:, :, self.rows]  # (outputs, designs, windows, samples)
-        keys = np.where(np.isnan(outputs), -np.inf, outputs)
-        keys[..., self.repeated] = np.inf
-        ranks = []
-        for _ in range(RANKS):
-            ranks.append(np.argmin(keys, axis=-1))
-            if keys.shape[-1] > 1:
-                np.put_along_axis(keys, ranks[-1][..., None], np.inf, axis=-1)
-        picked = np.stack(ranks, axis=-1)  # (outputs, designs, windows, ranks)
-        found: npt.NDArray[np.intp] = self.rows[np.arange(len(self.rows))[:, None], picked]
-        return found.reshape(*found.shape[:2], -1).transpose(0, 2, 1)
+        _, outputs, designs = values.shape
+        found = np.empty((outputs, designs, len(self.cycles), RANKS), dtype=np.intp)
+        for windows, rows, repeated in self.groups:
+            keys = values.transpose(1, 2, 0)[:, :, rows]  # (outputs, designs, windows, samples)
+            keys = np.where(np.isnan(keys), -np.inf, keys)
+            keys[..., repeated] = np.inf
+            every = np.ogrid[:outputs, :designs, : len(rows)]
+            for rank in range(RANKS):
+                place = np.argmin(keys, axis=-1)
+                found[:, :, windows, rank] = rows[every[2], place]
+                if rank + 1 < min(RANKS, keys.shape[-1]):
+                    keys[*every, place] = np.inf
+        return found.reshape(outputs, designs, -1).transpose(0, 2, 1)
 
 
 def windows_of(records: Sequence[CycleRecord], windows: int) -> TimeWindows:
@@ -563,6 +563,4 @@ def windows_of(records: Sequence[CycleRecord], windows: int) -> TimeWindows:
         parts += [(k, first + a, first + b) for a, b in pairwise(edges)]
         first += len(time)
     cycles, starts, ends = np.array(parts).T
-    places = starts[:, None] + np.arange((ends - starts).max())
-    repeated = places >= ends[:, None]
-    return TimeWindows(tuple(labels), cycles, np.minimum(places, ends[:, None] - 1), repeated)
+    return TimeWindows(tuple(labels), cycles, padded(starts, ends))

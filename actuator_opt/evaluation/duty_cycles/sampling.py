@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...base.dataclass import dataclass
-from ...base.numeric import Array
+from ...base.numeric import Array, sorted_unique
 from ...base.symbolic.program import EQUAL, WIDTH
 from ...base.symbolic.recorded import RecordedFunction
 from ...design.cycle_record import CycleRecord
@@ -25,6 +25,33 @@ from .samples import COLUMNS, NEIGHBOURS, sample, summands
 Rows = npt.NDArray[np.intp]
 WITH_SUPPLY = (*COLUMNS, "supply")
 """Columns of a cycle that states the supply pressure of every sample."""
+
+
+class Padded(NamedTuple):
+    """Parts of the samples of similar length, such as cycles or windows of time."""
+
+    parts: Rows
+    """Numbers of the parts."""
+    rows: Rows
+    """Samples (parts, samples); short parts repeat their last."""
+    repeated: npt.NDArray[np.bool_]
+    """Whether a sample only fills up its part."""
+
+
+def padded(starts: Rows, ends: Rows) -> list[Padded]:
+    """The parts from first samples to before their ends, by lengths that differ by a factor of 2.
+
+    >>> [group.parts.tolist() for group in padded(np.array([0, 90, 100]), np.array([90, 95, 180]))]
+    [[0, 2], [1]]
+    """
+    groups = []
+    kinds = np.floor(np.log2((ends - starts).max() / (ends - starts)))
+    for kind in sorted_unique(kinds):
+        parts = np.flatnonzero(kinds == kind)
+        first, end = starts[parts, None], ends[parts, None]
+        places = first + np.arange((end - first).max())
+        groups.append(Padded(parts, np.minimum(places, end - 1), places >= end))
+    return groups
 
 
 @dataclass(frozen=True)
