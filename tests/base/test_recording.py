@@ -395,21 +395,22 @@ def shared_program(shared: int):
     shared=st.integers(0, 2),
     directions=st.integers(0, 9),
     summed=st.booleans(),
+    apart=st.booleans(),
     seed=st.integers(0, 10**6),
 )
-def test_groups_of_points_share_inputs_and_slopes(sizes, shared, directions, summed, seed):
+def test_groups_of_points_share_inputs_and_slopes(sizes, shared, directions, summed, apart, seed):
     """Results as those of every point alone: some instructions run once for a group."""
     random = np.random.default_rng(seed)
     group = np.repeat(np.arange(len(sizes), dtype=np.int32), sizes)
     common = random.uniform(0.1, 2, (len(sizes), shared))
     own = random.uniform(0.1, 2, (len(group), 3 - shared))
-    seeds = random.normal(size=(len(sizes), 3, directions))
+    seeds = random.normal(size=(len(group) if apart else len(sizes), 3, directions))
     made = shared_program(shared)
     assert (made.once > 0) == (shared > 0)
     rows = len(sizes) if summed else None
     found = made.duals(common, own, seeds, rows, group)
     points = np.concatenate([common[group], own], axis=1)
-    expected = shared_program(0).duals(np.empty((1, 0)), points, seeds[group])
+    expected = shared_program(0).duals(np.empty((1, 0)), points, seeds if apart else seeds[group])
     if summed:
         expected = np.add.reduceat(expected, np.searchsorted(group, range(len(sizes))))
     np.testing.assert_allclose(found, expected, rtol=1e-13, atol=1e-13)

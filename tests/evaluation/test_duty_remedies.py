@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+from dataclasses import replace
 from math import sqrt
 
 import numpy as np
@@ -153,3 +155,12 @@ def test_a_cure_beyond_the_bounds_of_a_variable_is_named():
     shortfall = missed(actuator)["duty_supply_share"]
     cure = next(x for x in shortfall.remedies if x.path == "cylinder.bore")
     assert 24e-3 < cure.needed < 25e-3
+
+
+def test_shortfalls_are_searched_when_they_are_read_and_a_pickle_has_them():
+    """The search takes seconds; a copy of a study that was unpickled keeps the result."""
+    duty = ao.evaluate(knee(**FLOW)).duty
+    assert "shortfalls" not in vars(duty)
+    again = pickle.loads(pickle.dumps(duty))
+    assert again.shortfalls == replace(again).shortfalls == duty.shortfalls
+    assert {x.metric for x in duty.shortfalls} == {"duty_supply_share"}

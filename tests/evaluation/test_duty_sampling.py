@@ -160,7 +160,11 @@ def strong(cycles) -> dict:
     time = np.linspace(0.0, 1.0, 201)
     x = 50 + 20 * np.sin(2 * np.pi * time)
     noise = np.random.default_rng(2).normal(size=time.size)
-    loads = {"strong": 2e4 * np.cos(4 * np.pi * time), "noise": 2e3 * noise, "hold": 500 + 0 * time}
+    loads = {
+        "strong": -2e4 * np.cos(4 * np.pi * time),
+        "noise": 2e3 * noise,
+        "hold": 500 + 0 * time,
+    }
     records = {}
     for name in cycles:
         force = np.append(loads[name][:-1], loads[name][0])
@@ -174,7 +178,7 @@ def strong(cycles) -> dict:
         values |= {
             f"{name}|{key}": x for key, x in zip(keys, (1, 1, 210e5, 1, 0, 1e3, 10), strict=True)
         }
-    part = (400e6, 0.0, 0.5, 500e6, 160e6, 1e7)
+    part = (400e6, 0.0, 400e6, 500e6, 160e6, 1e7)
     values |= {f"part0.{key}": x for key, x in zip(STRESS, part, strict=True)}
     plan = SamplePlan(frozenset(), True, (), (), (FatiguePart("rod", "rod"),), {})
     found = CycleModels(plan, records, tuple(values))

@@ -111,6 +111,20 @@ def test_an_inertia_beyond_the_force_of_the_cycle_is_reported():
     assert any("its force does not contain" in note for note in found.cycle.notes)
 
 
+def test_the_power_of_an_open_cycle_ends_with_its_last_force():
+    """A stroke from 20 to 90 mm in 1 s whose load falls from 3000 N to 200 N."""
+    time = np.linspace(0.0, 1.0, 81)
+    x, force = 55 - 35 * np.cos(pi * time), 3000 - 2800 * time
+    rows = [f"{t:.6f},{p:.6f},{f:.6f}" for t, p, f in zip(time, x, force, strict=True)]
+    cycle = "\n".join(["time [s],position [mm],force [N]", *rows]) + "\n"
+    actuator = knee(cycle, stated="closed: false\n", load__mass="1 kg")
+    scene, records = with_cycle(scenario(1.0, sample_time=1e-3), actuator.subject())
+    found = simulate(scene, actuator.subject(), records=records)
+    rows = {row.name: row for row in found.cycle.rows}
+    assert rows["duty_power_peak"].difference == pytest.approx(0.0, abs=0.05)
+    assert rows["duty_work_out"].difference == pytest.approx(0.0, abs=AGREEMENT)
+
+
 def test_a_sine_takes_the_energy_of_the_closed_form():
     """W = p (A_A + A_B) S/2 without leakage; both models agree on it, and on the work."""
     changed = {"valve__leakage_flow": "0 l/min", "piston__leakage_conductance": "0 ml/min/bar"}
