@@ -156,15 +156,13 @@ class RecordedWithDuty(RecordedFunction):
         width = group_width(points)
         if not width:
             return None
-        last = self._count + self._width
-        variables, others = (
-            duals_of(part, width) for part in (points[: self._count], points[last:])
-        )
-        inputs = np.concatenate([variables, others])
+        count, last = self._count, self._count + self._width
+        whole = duals_of(points, width)
+        inputs = np.concatenate([whole[:count], whole[last:]])
         own, seeds = inputs[:, :, 0].T, inputs[:, :, 1:].transpose(1, 0, 2)
         numbers = self._numbers.duals(np.empty((1, 0)), own, seeds)
-        results = self._models.duals(numbers.transpose(1, 0, 2), self._used)
-        found, holds = self._run(np.concatenate([variables, results, others]))
+        whole[count:last] = self._models.duals(numbers.transpose(1, 0, 2), self._used)
+        found, holds = self._run(whole)
         if not holds.all():
             return None
         self.points += len(holds)

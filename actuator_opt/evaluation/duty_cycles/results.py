@@ -541,15 +541,14 @@ class TimeWindows(NamedTuple):
         _, outputs, designs = values.shape
         found = np.empty((outputs, designs, len(self.cycles), RANKS), dtype=np.intp)
         for windows, rows, repeated in self.groups:
-            keys = values.transpose(1, 2, 0)[:, :, rows]  # (outputs, designs, windows, samples)
-            keys = np.where(np.isnan(keys), -np.inf, keys)
-            keys[..., repeated] = np.inf
-            every = np.ogrid[:outputs, :designs, : len(rows)]
+            keys = np.take(values.transpose(1, 2, 0), rows, axis=2)
+            keys[..., repeated] = np.inf  # (outputs, designs, windows, samples)
+            flat, every = keys.reshape(-1, rows.shape[1]), np.arange(keys[..., 0].size)
             for rank in range(RANKS):
-                place = np.argmin(keys, axis=-1)
-                found[:, :, windows, rank] = rows[every[2], place]
-                if rank + 1 < min(RANKS, keys.shape[-1]):
-                    keys[*every, place] = np.inf
+                place = np.argmin(flat, axis=1)  # NaN if there is any
+                found[:, :, windows, rank] = rows[every % len(rows), place].reshape(keys.shape[:3])
+                if rank + 1 < min(RANKS, rows.shape[1]):
+                    flat[every, place] = np.inf
         return found.reshape(outputs, designs, -1).transpose(0, 2, 1)
 
 

@@ -253,11 +253,12 @@ class Samples:
         wanted : whether each sum is wanted (sums,); others are 0
         weights : of the flow in its ripple volume and in its peak (2, samples, designs)
         """
-        sums = np.zeros((len(wanted), len(self._kinds), *inputs.shape))
-        places = np.flatnonzero(wanted)[:, None]
+        shape = inputs.shape[0], len(self._kinds), int(wanted.sum()), 1 + inputs.seeds.shape[3]
+        total = np.zeros(shape)
         for part in parts:
-            found = self._run(summands, part, inputs, wanted, weights)
-            sums[places, part.cycles] += inputs.spread(found.transpose(2, 1, 0, 3))
+            total[:, part.cycles] += self._run(summands, part, inputs, wanted, weights)
+        sums = np.zeros((len(wanted), len(self._kinds), *inputs.shape))
+        sums[wanted] = inputs.spread(total.transpose(2, 1, 0, 3))
         return sums
 
     def _run(
