@@ -98,6 +98,8 @@ class Evaluator:
         """By a point's coordinates: results computed in advance at the complex points `columns`."""
         self.judged: dict[tuple[bytes, bool, float, bool], Any] = {}
         """Optimality conditions of points, see `kinks.check`."""
+        self.bends: dict[tuple[bytes, float], Any] = {}
+        """Kinks near points, see `kinks`."""
         self._cache: dict[bytes, Point] = {}
 
     @property

@@ -216,7 +216,21 @@ def _flipped(signs: Vector) -> list[Vector]:
 
 
 def _kinks_near(evaluator: Evaluator, point: Point, distance: float) -> _Kinks | None:
-    """The kinks of objective and nearly active limits within a distance; None if none or many."""
+    """The kinks of objective and nearly active limits within a distance; None if none or many.
+
+    The evaluator keeps them, as several searches begin at the same point.
+    """
+    key = point.z.tobytes(), distance
+    if key not in evaluator.bends:
+        evaluator.bends[key] = _bends_near(evaluator, point, distance)
+    bends = evaluator.bends[key]
+    return None if bends is None else _Kinks(evaluator, point.z, *bends)
+
+
+def _bends_near(
+    evaluator: Evaluator, point: Point, distance: float
+) -> tuple[Array, Array, float] | None:
+    """Normals and rows of the kinks of `_kinks_near`, and the step beside them."""
     space, m, unit = evaluator.space, evaluator.constraint_count, np.eye(evaluator.space.size)
     z = point.z[:, None] + distance * np.concatenate([unit, -unit], axis=1)
     used = np.abs(point.rows) <= 10 * distance
@@ -242,8 +256,7 @@ def _kinks_near(evaluator: Evaluator, point: Point, distance: float) -> _Kinks |
         left &= np.linalg.norm(normals @ basis, axis=1) < PARALLEL
     if not rows:
         return None
-    step = distance * INSIDE / BESIDE
-    return _Kinks(evaluator, point.z, chosen, np.flatnonzero(used)[rows], step)
+    return chosen, np.flatnonzero(used)[rows], distance * INSIDE / BESIDE
 
 
 def pieces(
