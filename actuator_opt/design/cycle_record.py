@@ -632,10 +632,10 @@ def _power_between(time: Array, motion: Array, load: Array, *, closed: bool) -> 
     for word, sign in (("peak", 1.0), ("absorbed", -1.0)):
         excess = float(np.max(sign * power) - np.max(sign * stated))
         if excess > POWER_BETWEEN * largest:
-            share = f"{100 * excess / largest:.0f} %" if largest else "all"
+            share = 100 * excess / (largest or excess)
             yield (
-                f"{_BETWEEN}the {word} power is higher than at all samples, by {share} of the "
-                "largest: smooth the file if this is noise; else state duty.samples, so that "
+                f"{_BETWEEN}the {word} power is higher than at all samples, by {share:.0f} % of "
+                "the largest: smooth the file if this is noise; else state duty.samples, so that "
                 "points of the splines count"
             )
 

@@ -580,7 +580,7 @@ def cycle_models(subject: PreparedDesign, plan: SamplePlan, numbers: Numbers) ->
 
 MANY_SAMPLES = 500
 """Samples of all duty cycles together, above which searches, prices and cures begin with fewer (our
-choice). A walk of 1000 samples then takes 9 s with prices instead of 14."""
+choice)."""
 FEW_SAMPLES = 200
 """Samples of each cycle that they then use (our choice)."""
 
@@ -588,8 +588,7 @@ FEW_SAMPLES = 200
 def with_few_samples(subject: PreparedDesign, many: int | None = None) -> PreparedDesign:
     """The design with `FEW_SAMPLES` of each duty cycle, if all together have many samples.
 
-    A cycle that has no more keeps its samples; if all do, the same design is returned. `many` is
-    the number of samples that is not exceeded without need; default: `MANY_SAMPLES`.
+    If no cycle has more than `FEW_SAMPLES`, it is the same. `many` replaces `MANY_SAMPLES`.
     """
     duty = subject.design.duty
     sizes = [0] if duty is None else [duty.record(cycle).time.size for cycle in duty.cycles]

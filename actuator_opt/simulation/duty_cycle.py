@@ -44,7 +44,8 @@ from ..studies.plant import Plant, ValveData, plant
 
 SAMPLES = 3000
 """Least number of samples of a period of the reference (our choice: the reference is linear between
-them; in the shipped cycles, half as many change no peak by 1 %)."""
+them; half as many change no result of the walking knee by 0.2 %, and the absorbed power of the
+flight control by 2 %)."""
 AGREEMENT = 0.02
 """Difference of the supply energies up to which the quasi-static results are confirmed (our
 choice)."""

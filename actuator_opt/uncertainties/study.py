@@ -306,7 +306,7 @@ DRAWS = 500
 """Number of draws for the estimate (our choice: its bounds are then within 4.5 % of the yield, and
 it takes a few per cent of the time of an optimisation)."""
 
-MANY_SAMPLES = 5000
+MOST_DRAWN = 5000
 """Samples of all duty cycles, above which draws use few of them (our choice: 100 000 would take 45
 s)."""
 
@@ -314,7 +314,7 @@ s)."""
 def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 0) -> YieldEstimate:
     """Estimate the yield of a design from the first `DRAWS` independent draws of `uncertainty`.
 
-    If duty cycles have more than `MANY_SAMPLES`, few of them count (`with_few_samples`).
+    If duty cycles have more than `MOST_DRAWN` samples, few of them count (`with_few_samples`).
 
     Parameters
     ----------
@@ -334,7 +334,7 @@ def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 
     if films_asked(subject.design):
         return YieldEstimate(why="solving the oil films of the seals takes too long")
     try:
-        model = UncertainModel(with_few_samples(subject, MANY_SAMPLES), inputs(subject))
+        model = UncertainModel(with_few_samples(subject, MOST_DRAWN), inputs(subject))
         counts = draw(model, DRAWS, seed)
     except ActuatorError as error:
         return YieldEstimate(why=error.diagnostics[0].message)

@@ -398,7 +398,7 @@ class Scenario(Section):
         str | None,
         CaseName(
             "duty cycle of the design that is simulated: its position over time is the reference, "
-            "its force, which contains the inertia of the load, the load",
+            "its force, with the inertia of the load in it, loads the rod",
         ),
     ] = None
     duration: Annotated[float, Of("duration", "simulated time")]

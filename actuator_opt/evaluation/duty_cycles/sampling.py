@@ -142,7 +142,7 @@ class _Kind(NamedTuple):
     """Direction of the rod; None: it differs between designs, or changes at a dead point."""
 
 
-class Part(NamedTuple):
+class SampleGroup(NamedTuple):
     """Samples with the same model."""
 
     kind: _Kind
@@ -186,7 +186,7 @@ class Samples:
         self._neighbours = np.concatenate([_neighbours(record) for record in records.values()])
         self._ends = np.array([[x.motion.min(), x.motion.max()] for x in records.values()])
         self._functions: dict[Any, RecordedFunction] = {}
-        self._parts: dict[bytes, list[Part]] = {}
+        self._parts: dict[bytes, list[SampleGroup]] = {}
 
     @cached_property
     def outputs(self) -> tuple[str, ...]:
@@ -196,7 +196,7 @@ class Samples:
             return tuple(sample(self.plan, one, one, linked=False))
 
     def values(
-        self, inputs: Inputs, parts: Sequence[Part], wanted: Array | None = None
+        self, inputs: Inputs, parts: Sequence[SampleGroup], wanted: Array | None = None
     ) -> SampleResults:
         """Results of all samples.
 
@@ -238,7 +238,7 @@ class Samples:
     def sums(
         self,
         inputs: Inputs,
-        parts: Sequence[Part],
+        parts: Sequence[SampleGroup],
         wanted: Array,
         weights: Array | None = None,
     ) -> Array:
@@ -264,7 +264,7 @@ class Samples:
     def _run(
         self,
         function: Callable[..., list[Array]],
-        part: Part,
+        part: SampleGroup,
         inputs: Inputs,
         wanted: Array,
         weights: Array | None = None,
@@ -321,7 +321,7 @@ class Samples:
             )
         return self._functions[key]
 
-    def parts(self, numbers: Array) -> list[Part]:
+    def parts(self, numbers: Array) -> list[SampleGroup]:
         """All samples by model at numbers (cycles, numbers, designs).
 
         A program for one direction of the rod is shorter than one that selects by direction.
@@ -340,7 +340,7 @@ class Samples:
             ]  # fmt: skip
         return self._parts[key]
 
-    def _by_kind(self, rows: Rows) -> list[Part]:
+    def _by_kind(self, rows: Rows) -> list[SampleGroup]:
         """Samples by the kind of their cycles."""
         parts = []
         for kind in dict.fromkeys(self._kinds):
@@ -351,7 +351,7 @@ class Samples:
             cycles, data = np.flatnonzero(sizes), self._data[own, : len(kind.columns)]
             if len(own):
                 data = np.concatenate([data, self._neighbours[own]], axis=1)
-                parts.append(Part(kind, own, cycles, sizes[cycles], data))
+                parts.append(SampleGroup(kind, own, cycles, sizes[cycles], data))
         return parts
 
     def _outward(self, numbers: Array) -> npt.NDArray[np.bool_]:
